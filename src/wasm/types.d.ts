@@ -1,0 +1,157 @@
+/** Bytes of files that a `.gltf` names by URI, keyed by that URI (percent-decoded). */
+export type Files = Record<string, Uint8Array>;
+
+/** Where a mark can live in a model's geometry. */
+export type Carrier = "ring";
+
+/** The owner's 48 bits: a tag of 1 to 8 characters (`A-Z a-z 0-9 - .`, the last not `.`), or a whole number from 0 to 2^48 - 1. */
+export type Payload = string | number;
+
+/**
+ * Upper limit of the RMS displacement, as a fraction of the bounding box's diagonal (0.00001 to 0.01), or a preset:
+ * `subtle` 0.0002, `balanced` 0.0004, `strong` 0.0008.
+ */
+export type Strength = "subtle" | "balanced" | "strong" | number;
+
+export interface EmbedOptions {
+  /** Default: `balanced`. */
+  strength?: Strength;
+  /** Default: every carrier. */
+  carriers?: Carrier[];
+}
+
+/** What the work is at. */
+export type Stage = "read" | "embed" | "write" | "measure" | "test";
+
+/** Called as work goes on; `fraction` (0 to 1) is of the stage, not of the whole. */
+export type OnProgress = (stage: Stage, fraction: number) => void;
+
+/**
+ * `found`: the payload was read and the chance of that without the key is at most 1e-9.
+ * `partial`: something of this key is there, but not enough to name it found; `reason` says what is missing.
+ * `none`: no evidence of this key. This does not prove that the model is not yours.
+ * `cannot-check`: the model has too little geometry to answer; `reason` says what is missing.
+ */
+export type Verdict = "found" | "partial" | "none" | "cannot-check";
+
+/** What one carrier says. */
+export interface CarrierReading {
+  name: Carrier;
+  /** Natural logarithm of the upper bound of the false-positive probability, every choice charged; at most 0. */
+  lnP: number;
+  /** The payload as a tag and as a number; `null` where none was read whose check bits hold. */
+  tag: string | null;
+  number: number | null;
+  /** Agreement of the symbols with that payload, weighted: 1 is perfect, 0 is chance. */
+  agreement: number;
+  /** Distinct addresses that were there to be read, and how many of them are this key's. */
+  addresses: number;
+  ownedAddresses: number;
+}
+
+/** A blind reading. */
+export interface Extraction {
+  verdict: Verdict;
+  /** The verdict in one sentence for a person. */
+  sentence: string;
+  /** Why it is not `found`; `null` where it is. */
+  reason: string | null;
+  tag: string | null;
+  number: number | null;
+  /** Over all carriers, the choice between them charged. */
+  lnP: number;
+  agreement: number;
+  carriers: CarrierReading[];
+}
+
+/** A test of one expected payload; `tag` and `number` are the expected ones. */
+export type Verification = Extraction;
+
+/** What an embedding did, and what was read back from its own output. */
+export interface EmbedReport {
+  tag: string;
+  number: number;
+  /** Welded vertices in the scene, and how many of them moved. */
+  vertices: number;
+  movedVertices: number;
+  /** The host's bounding-box diagonal in scene units. */
+  diagonal: number;
+  /** Displacement over all vertices, as fractions of that diagonal. */
+  rmsRel: number;
+  maxRel: number;
+  strength: number;
+  /** The output as `extract` reads it. */
+  readBack: Extraction;
+  /** SHA-256 in hexadecimal of the main file before and after. */
+  hostSha256: string;
+  markedSha256: string;
+}
+
+export interface Embedding {
+  /** The marked main file: `.glb` for a `.glb`, `.gltf` for a `.gltf`. */
+  model: Uint8Array;
+  /** The external buffers that changed, under the names they were handed in with. */
+  files: Files;
+  report: EmbedReport;
+}
+
+/** What a model is made of. */
+export interface Inspection {
+  container: "glb" | "gltf";
+  /** Bytes of the main file. */
+  bytes: number;
+  /** Of the scene, instances counted each, welded. */
+  vertices: number;
+  triangles: number;
+  components: number;
+  boundaryEdges: number;
+  nonManifoldEdges: number;
+  /** Bounding-box diagonal in scene units. */
+  diagonal: number;
+  meshes: number;
+  primitives: number;
+  nodes: number;
+  extensionsUsed: string[];
+  /** What each carrier could hold. */
+  capacity: { name: Carrier; addresses: number; neededAddresses: number }[];
+  sha256: string;
+}
+
+/** What is thrown: a stable `code` such as `document.truncated`, words for people, and for documents a JSON pointer. */
+export interface MeshmarkErrorObject {
+  code: string;
+  message: string;
+  path: string | null;
+}
+
+/** 32 bytes from an owner's name and passphrase: Argon2id, see docs/FORMAT.md. Takes tenths of a second by design. */
+export function deriveKey(owner: string, passphrase: string): Uint8Array;
+
+/** Marks a model. `key` is 32 bytes: from `deriveKey`, or a key file's. */
+export function embed(
+  model: Uint8Array,
+  files: Files | undefined,
+  payload: Payload,
+  key: Uint8Array,
+  options?: EmbedOptions,
+  onProgress?: OnProgress,
+  signal?: AbortSignal,
+): Embedding;
+
+/** Measures a suspect without any key. The result, versioned bytes, can be kept and tested against many keys. */
+export function measure(model: Uint8Array, files: Files | undefined, onProgress?: OnProgress, signal?: AbortSignal): Uint8Array;
+
+/** Reads a payload from evidence, knowing only the key. */
+export function extract(evidence: Uint8Array, key: Uint8Array): Extraction;
+
+/** Tests evidence for one expected payload: stronger than `extract`, for it has no payload to guess. */
+export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload): Verification;
+
+/** Describes a model and what it could hold, without a key. */
+export function inspect(model: Uint8Array, files?: Files): Inspection;
+
+/** A generated model to try things on: a .glb with normals and one material. */
+export function demoModel(): Uint8Array;
+
+/** The version of this module. */
+export function version(): string;

@@ -1,1 +1,338 @@
-fn main() {}
+//! The command line: what scripts and servers use. JSON on stdout; progress and errors on stderr.
+//!
+//! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input.
+
+use clap::{Args, Parser, Subcommand};
+use meshmark::document::DocumentError;
+use meshmark::{
+    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage, Strength, Verdict, embed,
+    extract, inspect, measure, verify,
+};
+use serde_json::{Map, Value, json};
+use std::error::Error as StdError;
+use std::io::{IsTerminal, Write, stderr};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+const FOUND: u8 = 0;
+const NOT_FOUND: u8 = 1;
+const CANNOT_CHECK: u8 = 2;
+
+/// Invisible, keyed, robust watermarks in the geometry of glTF models
+#[derive(Parser)]
+#[command(version, after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Mark a model and read the mark back
+    Embed {
+        /// The model: .glb, or .gltf with its buffers beside it
+        input: PathBuf,
+        /// Where the marked model goes; changed buffers of a .gltf go beside it
+        output: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+        #[command(flatten)]
+        payload: PayloadArgument,
+        /// subtle, balanced, strong, or a fraction of the diagonal
+        #[arg(long, default_value = "balanced")]
+        strength: Strength,
+        /// Comma-separated
+        #[arg(long, value_delimiter = ',', default_value = "ring", value_parser = carrier)]
+        carriers: Vec<Carrier>,
+    },
+    /// Read the mark of a key from a model, or from measured evidence
+    Extract {
+        /// .glb, .gltf, or a file that `measure` wrote
+        input: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+    },
+    /// Test a model, or measured evidence, for an expected payload
+    Verify {
+        /// .glb, .gltf, or a file that `measure` wrote
+        input: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+        #[command(flatten)]
+        payload: PayloadArgument,
+    },
+    /// Measure a model without a key; the evidence can be tested later, elsewhere
+    Measure {
+        /// .glb or .gltf
+        input: PathBuf,
+        /// Where the evidence goes
+        evidence: PathBuf,
+    },
+    /// Describe a model and what it could hold
+    Inspect {
+        /// .glb or .gltf
+        input: PathBuf,
+    },
+}
+
+/// Whose mark. Without a passphrase file or key file, MESHMARK_PASSPHRASE is used, or the passphrase is asked for.
+#[derive(Args)]
+struct Owner {
+    /// The owner's name, which with the passphrase makes the key
+    #[arg(long, value_name = "NAME", required_unless_present = "key_file")]
+    owner: Option<String>,
+    /// File that holds the passphrase (one line end at its end is dropped)
+    #[arg(long, value_name = "FILE", conflicts_with = "key_file")]
+    passphrase_file: Option<PathBuf>,
+    /// File of 32 bytes that is the key, instead of owner and passphrase
+    #[arg(long, value_name = "FILE", conflicts_with = "owner")]
+    key_file: Option<PathBuf>,
+}
+
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+struct PayloadArgument {
+    /// 1 to 8 characters: A-Z a-z 0-9 - . (the last not .)
+    #[arg(long)]
+    tag: Option<String>,
+    /// A whole number below 2^48, instead of a tag
+    #[arg(long)]
+    number: Option<u64>,
+}
+
+type Failure = Box<dyn StdError>;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => error.exit(),
+    };
+    match run(arguments.command) {
+        Ok((report, code)) => {
+            println!("{report:#}");
+            ExitCode::from(code)
+        }
+        Err(failure) => {
+            let known = failure.downcast_ref::<Error>();
+            let report = json!({
+                "verdict": "cannot-check",
+                "error": {
+                    "code": known.map_or("io", Error::code),
+                    "message": failure.to_string(),
+                    "path": known.and_then(Error::pointer),
+                },
+            });
+            println!("{report:#}");
+            eprintln!("meshmark: {failure}");
+            ExitCode::from(CANNOT_CHECK)
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(Value, u8), Failure> {
+    let mut clock = Clock::new();
+    match command {
+        Command::Embed { input, output, owner, payload, strength, carriers } => {
+            let payload = payload.read()?;
+            let key = owner.key()?;
+            let options = EmbedOptions { strength, carriers };
+            let (model, files) = open(&input)?;
+            let marked = embed(&model, &files, payload, &key, &options, &mut clock)?;
+            store(&output, &marked.model)?;
+            for (name, bytes) in &marked.files {
+                store(&sibling(&output, name), bytes)?;
+            }
+            Ok((report(&marked.report, clock)?, FOUND))
+        }
+        Command::Extract { input, owner } => {
+            let key = owner.key()?;
+            let evidence = evidence(&input, &mut clock)?;
+            clock.start("test");
+            judge(&extract(&evidence, &key), clock)
+        }
+        Command::Verify { input, owner, payload } => {
+            let payload = payload.read()?;
+            let key = owner.key()?;
+            let evidence = evidence(&input, &mut clock)?;
+            clock.start("test");
+            judge(&verify(&evidence, &key, payload), clock)
+        }
+        Command::Measure { input, evidence } => {
+            let (model, files) = open(&input)?;
+            let bytes = measure(&model, &files, &mut clock)?.to_bytes();
+            store(&evidence, &bytes)?;
+            Ok((report(&json!({ "bytes": bytes.len() }), clock)?, FOUND))
+        }
+        Command::Inspect { input } => {
+            let (model, files) = open(&input)?;
+            Ok((report(&inspect(&model, &files)?, clock)?, FOUND))
+        }
+    }
+}
+
+fn judge(extraction: &Extraction, clock: Clock) -> Result<(Value, u8), Failure> {
+    let code = match extraction.verdict {
+        Verdict::Found => FOUND,
+        Verdict::CannotCheck => CANNOT_CHECK,
+        _ => NOT_FOUND,
+    };
+    Ok((report(extraction, clock)?, code))
+}
+
+/// A report as JSON with names in snake case, and the milliseconds of each stage.
+fn report(report: &impl serde::Serialize, clock: Clock) -> Result<Value, Failure> {
+    let mut value = snake_case(serde_json::to_value(report)?);
+    if let Value::Object(fields) = &mut value {
+        fields.insert("ms".to_owned(), clock.milliseconds());
+    }
+    Ok(value)
+}
+
+fn snake_case(value: Value) -> Value {
+    let rename = |name: String| {
+        name.chars().fold(String::new(), |mut out, c| {
+            if c.is_ascii_uppercase() {
+                out.push('_');
+            }
+            out.push(c.to_ascii_lowercase());
+            out
+        })
+    };
+    match value {
+        Value::Object(fields) => Value::Object(fields.into_iter().map(|(k, v)| (rename(k), snake_case(v))).collect()),
+        Value::Array(items) => items.into_iter().map(snake_case).collect(),
+        other => other,
+    }
+}
+
+fn carrier(name: &str) -> Result<Carrier, String> {
+    let known = || Carrier::ALL.map(Carrier::name).join(", ");
+    Carrier::from_name(name).ok_or_else(|| format!("the carriers are: {}", known()))
+}
+
+impl PayloadArgument {
+    fn read(&self) -> Result<Payload, Failure> {
+        let payload = match (&self.tag, self.number) {
+            (Some(tag), _) => Payload::from_tag(tag),
+            (None, number) => Payload::from_number(number.unwrap_or_default()),
+        };
+        Ok(payload.map_err(Error::from)?)
+    }
+}
+
+impl Owner {
+    fn key(&self) -> Result<Key, Failure> {
+        let key = match (&self.key_file, &self.owner) {
+            (Some(file), _) => Key::from_bytes(&load(file)?),
+            (None, owner) => Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?),
+        };
+        Ok(key.map_err(Error::from)?)
+    }
+
+    fn passphrase(&self) -> Result<String, Failure> {
+        if let Some(file) = &self.passphrase_file {
+            let text = String::from_utf8(load(file)?)?;
+            let text = text.strip_suffix('\n').unwrap_or(&text);
+            return Ok(text.strip_suffix('\r').unwrap_or(text).to_owned());
+        }
+        match std::env::var("MESHMARK_PASSPHRASE") {
+            Ok(passphrase) => Ok(passphrase),
+            Err(_) => Ok(rpassword::prompt_password("Passphrase: ")?),
+        }
+    }
+}
+
+fn evidence(input: &Path, clock: &mut Clock) -> Result<Evidence, Failure> {
+    let (model, files) = open(input)?;
+    if model.starts_with(b"MMEV") {
+        return Ok(Evidence::from_bytes(&model).map_err(Error::from)?);
+    }
+    Ok(measure(&model, &files, clock)?)
+}
+
+/// A model and the external buffers that it names, which are looked for beside it.
+fn open(path: &Path) -> Result<(Vec<u8>, Files), Failure> {
+    let model = load(path)?;
+    let mut files = Files::new();
+    loop {
+        match inspect_files(&model, &files) {
+            Some(uri) if !files.contains_key(&uri) => {
+                let bytes = load(&sibling(path, &uri))?;
+                files.insert(uri, bytes);
+            }
+            _ => return Ok((model, files)),
+        }
+    }
+}
+
+/// The first external buffer that is not among the files.
+fn inspect_files(model: &[u8], files: &Files) -> Option<String> {
+    match meshmark::document::Document::read(model, files) {
+        Err(DocumentError::MissingFile { uri, .. }) => Some(uri),
+        _ => None,
+    }
+}
+
+fn sibling(path: &Path, name: &str) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).join(name)
+}
+
+fn load(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()).into())
+}
+
+fn store(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()).into())
+}
+
+/// Times the stages of the work, and shows them where somebody watches.
+struct Clock {
+    stages: Vec<(&'static str, f64)>,
+    running: Option<(&'static str, Instant)>,
+}
+
+impl Clock {
+    fn new() -> Clock {
+        Clock { stages: Vec::new(), running: None }
+    }
+
+    fn start(&mut self, stage: &'static str) {
+        if self.running.is_none_or(|(running, _)| running != stage) {
+            self.stop();
+            self.running = Some((stage, Instant::now()));
+        }
+    }
+
+    fn stop(&mut self) {
+        if let Some((stage, since)) = self.running.take() {
+            self.stages.push((stage, since.elapsed().as_secs_f64() * 1e3));
+        }
+    }
+
+    /// Milliseconds by stage; a stage that ran twice counts both times.
+    fn milliseconds(mut self) -> Value {
+        self.stop();
+        if stderr().is_terminal() {
+            eprint!("\r\x1b[K");
+        }
+        let mut sums = Map::new();
+        for (stage, ms) in self.stages {
+            let sum = sums.get(stage).and_then(Value::as_f64).unwrap_or_default() + ms;
+            sums.insert(stage.to_owned(), json!((sum * 1e3).round() / 1e3));
+        }
+        Value::Object(sums)
+    }
+}
+
+impl Progress for Clock {
+    fn report(&mut self, stage: Stage, fraction: f64) -> ControlFlow<()> {
+        self.start(stage.name());
+        if stderr().is_terminal() {
+            eprint!("\r\x1b[K{} {:.0} %", stage.name(), fraction * 100.0);
+            let _ = stderr().flush();
+        }
+        ControlFlow::Continue(())
+    }
+}

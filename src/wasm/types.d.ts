@@ -69,7 +69,8 @@ export type Verification = Extraction;
 
 /** What an embedding did, and what was read back from its own output. */
 export interface EmbedReport {
-  tag: string;
+  /** `null` for the one number, 2^48 - 1, that has no tag. */
+  tag: string | null;
   number: number;
   /** Welded vertices in the scene, and how many of them moved. */
   vertices: number;

@@ -1,0 +1,144 @@
+//! A rateless, time-varying convolutional code and its list decoder.
+//!
+//! Memory 8, ended by 8 zero bits. There is no fixed length: every address of a carrier is a parity check of its own,
+//! drawn from the key, so addresses that an attack destroys cost energy and nothing else. (A code of fixed length with
+//! repetition left 6 % of the bits wrong where this one is right: erased positions of such a code cannot be made good.)
+//!
+//! Decoding collects the soft values of a step by taps, turns them into metrics of the 512 register states by one
+//! Walsh-Hadamard transform, and runs the parallel list Viterbi algorithm (Seshadri and Sundberg 1994) on 256 states.
+//! O(steps * states * list).
+
+use super::{SoftSymbol, Symbol};
+
+/// Bits of a message: 48 of payload, 12 of check.
+pub const MESSAGE_BITS: u32 = 60;
+const MEMORY: u32 = 8;
+/// Time steps: the message, then zeros that bring the register back to its start.
+pub(super) const STEPS: usize = (MESSAGE_BITS + MEMORY) as usize;
+const REGISTERS: usize = 1 << (MEMORY + 1);
+const STATES: usize = 1 << MEMORY;
+
+/// A message ready to give the sign of any symbol.
+#[derive(Clone)]
+pub struct Codeword([u16; STEPS]);
+
+impl Codeword {
+    /// Encodes the lowest 60 bits of a message, the highest of them first.
+    pub fn new(message: u64) -> Codeword {
+        let mut registers = [0; STEPS];
+        let mut state = 0;
+        for (step, register) in registers.iter_mut().enumerate() {
+            let bit = if step < MESSAGE_BITS as usize { message >> (MESSAGE_BITS as usize - 1 - step) & 1 } else { 0 };
+            *register = (bit as u16) << MEMORY | state;
+            state = *register >> 1;
+        }
+        Codeword(registers)
+    }
+
+    /// +1 or -1.
+    pub fn sign(&self, symbol: Symbol) -> f64 {
+        match symbol {
+            Symbol::Pilot => 1.0,
+            Symbol::Parity { step, taps } => {
+                if (self.0[usize::from(step)] & taps).count_ones() & 1 == 0 { 1.0 } else { -1.0 }
+            }
+        }
+    }
+}
+
+/// The `list` likeliest messages, best first. Pilots are ignored.
+pub fn decode(symbols: &[SoftSymbol], list: usize) -> Vec<u64> {
+    Trellis::new(symbols).best_paths(list)
+}
+
+/// The metric of every register state at every step.
+struct Trellis(Vec<[f64; REGISTERS]>);
+
+/// One way to reach a state: its metric, the predecessor, and which of the predecessor's ways it prolongs.
+#[derive(Clone, Copy)]
+struct Path {
+    metric: f64,
+    state: u8,
+    rank: u16,
+}
+
+impl Trellis {
+    fn new(symbols: &[SoftSymbol]) -> Trellis {
+        let mut steps = vec![[0.0; REGISTERS]; STEPS];
+        for soft in symbols {
+            if let Symbol::Parity { step, taps } = soft.symbol {
+                steps[usize::from(step)][usize::from(taps)] += soft.value;
+            }
+        }
+        steps.iter_mut().for_each(walsh_hadamard);
+        Trellis(steps)
+    }
+
+    fn best_paths(&self, list: usize) -> Vec<u64> {
+        let origin = Path { metric: 0.0, state: 0, rank: 0 };
+        let mut reached: Vec<Vec<Path>> = vec![Vec::new(); STATES];
+        reached[0].push(origin);
+        let mut history = Vec::with_capacity(STEPS);
+        for (step, metrics) in self.0.iter().enumerate() {
+            let next = (0..STATES).map(|state| {
+                let input = state >> (MEMORY - 1);
+                if step >= MESSAGE_BITS as usize && input == 1 {
+                    return Vec::new();
+                }
+                let low = (state << 1) & (STATES - 1);
+                let [a, b] = [low, low | 1].map(|from| {
+                    let branch = metrics[input << MEMORY | from];
+                    reached[from].iter().enumerate().map(move |(rank, path)| Path {
+                        metric: path.metric + branch,
+                        state: from as u8,
+                        rank: rank as u16,
+                    })
+                });
+                merge(a, b, list)
+            });
+            let next = next.collect();
+            history.push(std::mem::replace(&mut reached, next));
+        }
+        history.push(reached);
+        (0..history[STEPS][0].len()).map(|rank| trace(&history, rank)).collect()
+    }
+}
+
+/// The best `list` of two sequences that are each in decreasing order of metric; the first wins ties.
+fn merge(a: impl Iterator<Item = Path>, b: impl Iterator<Item = Path>, list: usize) -> Vec<Path> {
+    let (mut a, mut b) = (a.peekable(), b.peekable());
+    let next = || match (a.peek(), b.peek()) {
+        (Some(x), Some(y)) if y.metric > x.metric => b.next(),
+        (Some(_), _) => a.next(),
+        (None, _) => b.next(),
+    };
+    std::iter::from_fn(next).take(list).collect()
+}
+
+/// The message of one of the ways to the last state: a state's highest bit is the input that led to it.
+fn trace(history: &[Vec<Vec<Path>>], rank: usize) -> u64 {
+    let (mut state, mut rank, mut message) = (0, rank, 0);
+    for step in (1..=STEPS).rev() {
+        if step <= MESSAGE_BITS as usize {
+            let input = (state >> (MEMORY - 1)) as u64;
+            message |= input << (MESSAGE_BITS as usize - step);
+        }
+        let path = history[step][state][rank];
+        (state, rank) = (usize::from(path.state), usize::from(path.rank));
+    }
+    message
+}
+
+/// In place: `y[r] = sum over t of x[t] * (-1)^popcount(r & t)`.
+fn walsh_hadamard(x: &mut [f64; REGISTERS]) {
+    let mut half = 1;
+    while half < REGISTERS {
+        for block in x.chunks_exact_mut(2 * half) {
+            let (low, high) = block.split_at_mut(half);
+            for (a, b) in low.iter_mut().zip(high) {
+                (*a, *b) = (*a + *b, *a - *b);
+            }
+        }
+        half *= 2;
+    }
+}

@@ -1,0 +1,231 @@
+//! Meshes and the triangles of their primitives (glTF 2.0 specification section 3.7.2).
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::mesh::Mode;
+use gltf::json::validation::Checked;
+
+use super::accessor::{Accessor, bytes_at, unsigned};
+use super::buffer::Storage;
+use super::schema::{self, Root};
+use super::{DocumentError, item};
+
+/// The largest number of elements of an accessor without a buffer view, whose number no data bounds.
+const MAX_UNBACKED: usize = 1 << 20;
+
+/// A set of primitives, placed by nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// The parts of the mesh.
+    pub primitives: Vec<Primitive>,
+}
+
+/// A part of a mesh that is drawn at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Primitive {
+    /// The accessor of the vertex positions. A primitive without is not drawn.
+    pub position: Option<usize>,
+    /// What the vertices form.
+    pub mode: Mode,
+    /// The accessor of the vertex indices.
+    pub indices: Option<usize>,
+    /// Whether the primitive has morph targets, whose displacements add to the positions.
+    pub has_morph_targets: bool,
+}
+
+/// The meshes of the file.
+pub(super) fn read(root: &Root, accessors: &[Accessor]) -> Result<Vec<Mesh>, DocumentError> {
+    let meshes = root.meshes.iter().enumerate().map(|(index, mesh)| {
+        let primitives = mesh.primitives.iter().enumerate().map(|(part, primitive)| {
+            read_primitive(
+                primitive,
+                accessors,
+                &format!("/meshes/{index}/primitives/{part}"),
+            )
+        });
+        Ok(Mesh {
+            primitives: primitives.collect::<Result<_, _>>()?,
+        })
+    });
+    meshes.collect()
+}
+
+fn read_primitive(
+    primitive: &schema::Primitive,
+    accessors: &[Accessor],
+    pointer: &str,
+) -> Result<Primitive, DocumentError> {
+    let accessor = |index: u64, property: &str| {
+        item(accessors, index, "accessors", || {
+            format!("{pointer}/{property}")
+        })
+        .map(|(_, accessor)| accessor)
+    };
+    let Checked::Valid(mode) = primitive.mode else {
+        return Err(DocumentError::BadJson {
+            detail: "the primitive mode is not one of glTF's".into(),
+            pointer: Some(format!("{pointer}/mode")),
+        });
+    };
+    for (target, attributes) in primitive.targets.iter().enumerate() {
+        for (name, &index) in attributes {
+            accessor(index, &format!("targets/{target}/{name}"))?;
+        }
+    }
+    let mut position = None;
+    for (name, &index) in &primitive.attributes {
+        let accessor = accessor(index, &format!("attributes/{name}"))?;
+        if name == "POSITION" {
+            check_position(accessor)?;
+            position = Some(accessor.index);
+        }
+    }
+    let indices = match primitive.indices {
+        Some(index) => {
+            let indices = accessor(index, "indices")?;
+            check_indices(indices)?;
+            Some(indices.index)
+        }
+        None => None,
+    };
+    Ok(Primitive {
+        position,
+        mode,
+        indices,
+        has_morph_targets: !primitive.targets.is_empty(),
+    })
+}
+
+fn check_position(accessor: &Accessor) -> Result<(), DocumentError> {
+    if accessor.kind != Type::Vec3 || !accessor.format.is_position() {
+        return Err(DocumentError::BadAccessor {
+            pointer: accessor.pointer(),
+            detail: "positions must have three components that are floats or 8- or 16-bit integers"
+                .into(),
+        });
+    }
+    check_unbacked(accessor)
+}
+
+fn check_indices(accessor: &Accessor) -> Result<(), DocumentError> {
+    let is_index = matches!(
+        accessor.format.component,
+        ComponentType::U8 | ComponentType::U16 | ComponentType::U32
+    );
+    if accessor.kind != Type::Scalar || !is_index {
+        return Err(DocumentError::BadAccessor {
+            pointer: accessor.pointer(),
+            detail: "vertex indices must be unsigned integers".into(),
+        });
+    }
+    check_unbacked(accessor)
+}
+
+fn check_unbacked(accessor: &Accessor) -> Result<(), DocumentError> {
+    if accessor.is_unbacked() && accessor.count > MAX_UNBACKED {
+        return Err(DocumentError::TooLarge {
+            what: "the number of vertices without data",
+            value: accessor.count as u64,
+            limit: MAX_UNBACKED as u64,
+            pointer: Some(format!("{}/count", accessor.pointer())),
+        });
+    }
+    Ok(())
+}
+
+/// The triangles of a primitive as vertex indices, each below the number of vertices.
+pub(super) fn triangles(
+    primitive: &Primitive,
+    accessors: &[Accessor],
+    storages: &[Storage],
+    pointer: &str,
+) -> Result<Vec<[u32; 3]>, DocumentError> {
+    let is_surface = matches!(
+        primitive.mode,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+    );
+    let Some(position) = primitive
+        .position
+        .filter(|_| is_surface)
+        .and_then(|index| accessors.get(index))
+    else {
+        return Ok(Vec::new());
+    };
+    let corners = match primitive.indices.and_then(|index| accessors.get(index)) {
+        Some(indices) => indexed_corners(indices, position.count, storages, pointer)?,
+        None => {
+            let count = u32::try_from(position.count).map_err(|_| DocumentError::TooLarge {
+                what: "the number of vertices",
+                value: position.count as u64,
+                limit: u64::from(u32::MAX),
+                pointer: Some(format!("{}/count", position.pointer())),
+            })?;
+            (0..count).collect()
+        }
+    };
+    Ok(assemble(primitive.mode, &corners))
+}
+
+fn indexed_corners(
+    indices: &Accessor,
+    count: usize,
+    storages: &[Storage],
+    pointer: &str,
+) -> Result<Vec<u32>, DocumentError> {
+    let component = indices.format.component;
+    let restart = match component {
+        ComponentType::U8 => u32::from(u8::MAX),
+        ComponentType::U16 => u32::from(u16::MAX),
+        _ => u32::MAX,
+    };
+    let pointer = || format!("{pointer}/indices");
+    let corner = |slot: Option<_>| {
+        let bytes = slot.and_then(|slot| bytes_at(storages, slot, component.size()));
+        let vertex = bytes
+            .and_then(|bytes| unsigned(component, bytes))
+            .unwrap_or(0);
+        if vertex == restart {
+            return Err(DocumentError::PrimitiveRestart {
+                pointer: pointer(),
+                value: vertex,
+            });
+        }
+        if u64::from(vertex) >= count as u64 {
+            return Err(DocumentError::BadVertex {
+                pointer: pointer(),
+                vertex,
+                count,
+            });
+        }
+        Ok(vertex)
+    };
+    indices.slots(storages)?.into_iter().map(corner).collect()
+}
+
+/// Triangles in the winding of the specification; vertices left over form none.
+fn assemble(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
+    let windows = corners
+        .windows(3)
+        .filter_map(|window| window.first_chunk::<3>());
+    match mode {
+        Mode::Triangles => corners.as_chunks().0.to_vec(),
+        Mode::TriangleStrip => windows
+            .enumerate()
+            .map(|(place, &[a, b, c])| {
+                if place.is_multiple_of(2) {
+                    [a, b, c]
+                } else {
+                    [a, c, b]
+                }
+            })
+            .collect(),
+        Mode::TriangleFan => match corners.split_first() {
+            Some((&hub, rim)) => rim
+                .windows(2)
+                .filter_map(|window| window.first_chunk())
+                .map(|&[b, c]| [b, c, hub])
+                .collect(),
+            None => Vec::new(),
+        },
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+    }
+}

@@ -1,0 +1,436 @@
+//! glTF 2.0 documents, read and written without loss.
+//!
+//! A [`Document`] is a model file (`.glb` or `.gltf`) with the external buffers it names. It gives
+//! out what concerns geometry, takes new vertex positions, and writes the file again: byte for byte
+//! the input if no position changed, otherwise with nothing else changed than the bytes of those
+//! positions and the numbers in `min` and `max` of their accessors. Extensions, `extras`, the order
+//! and spelling of everything in the JSON text, padding and unknown chunks stay as they are, because
+//! writing edits spans of the original text and patches the original bytes.
+//!
+//! The module knows bytes and numbers, not geometry. The schema is read through types of its own
+//! which borrow from the text ([`schema`] says why), with the `gltf` crate's enumerations.
+//! `KHR_mesh_quantization`, which that crate refuses, is read here; compressed geometry and required
+//! extensions that may concern positions are refused.
+//!
+//! All offsets and lengths of the file are checked while reading, before anything is allocated for
+//! them, so the memory used is a small multiple of the input's size. Malformed input is an error and
+//! never a panic.
+#![deny(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::arithmetic_side_effects
+)]
+
+mod accessor;
+mod bounds;
+mod buffer;
+mod container;
+mod data_uri;
+mod error;
+mod extension;
+mod mesh;
+mod node;
+mod region;
+mod schema;
+mod sharing;
+
+use std::collections::BTreeMap;
+
+use self::accessor::Accessor;
+use self::buffer::{Origin, Storage};
+use self::region::{Region, View};
+use self::schema::Root;
+use self::sharing::Sharing;
+
+pub use self::container::Container;
+pub use self::error::DocumentError;
+pub use self::mesh::{Mesh, Primitive};
+pub use self::node::{Node, Transform};
+pub use self::region::Slot;
+pub use gltf::json::mesh::Mode;
+
+/// External files by the URI that the `.gltf` file names them with, percent-decoded.
+pub type Files = BTreeMap<String, Vec<u8>>;
+
+/// A written document.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The `.glb` or `.gltf` file.
+    pub model: Vec<u8>,
+    /// The external buffers that changed, by the names they were handed in with.
+    pub files: Files,
+}
+
+/// The values that the components of an accessor's positions can take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PositionGrid {
+    /// Single-precision floating-point numbers.
+    Float32,
+    /// The multiples of `step` from `min` to `max`: integers, or integers normalized to [-1, 1] or
+    /// [0, 1], by `KHR_mesh_quantization`.
+    Integer {
+        /// The distance between neighbouring values.
+        step: f64,
+        /// The smallest value.
+        min: f64,
+        /// The largest value.
+        max: f64,
+    },
+}
+
+/// A glTF 2.0 document.
+pub struct Document {
+    container: Container,
+    text: String,
+    rest: Vec<u8>,
+    storages: Vec<Storage>,
+    accessors: Vec<Accessor>,
+    sharing: Sharing,
+    extensions_used: Vec<String>,
+    meshes: Vec<Mesh>,
+    nodes: Vec<Node>,
+    roots: Vec<usize>,
+}
+
+impl Document {
+    /// Reads a model file: GLB if it starts with GLB's magic number, otherwise JSON text, with a
+    /// byte order mark or without. `files` holds at least the external buffers the model names;
+    /// images are not looked for.
+    ///
+    /// # Errors
+    ///
+    /// Any [`DocumentError`] of malformed, incomplete or unsupported input. The values of positions
+    /// and vertex indices are only checked by [`positions`](Self::positions) and
+    /// [`triangles`](Self::triangles).
+    pub fn read(model: &[u8], files: &Files) -> Result<Self, DocumentError> {
+        let parts = container::split(model)?;
+        let text = parts.text;
+        let root = Root::parse(&text)?;
+        extension::check(&root)?;
+        let (storages, buffers) = buffer::resolve(&root, &text, parts.binary, files)?;
+        let views = region::views(&root, &buffers)?;
+        let accessors = accessor::read(&root, &text, &views)?;
+        let meshes = mesh::read(&root, &accessors)?;
+        let (nodes, roots) = node::read(&root)?;
+        check_references(&root, &accessors, &views)?;
+        let sharing = Sharing::new(&root, &accessors, &views);
+        let extensions_used = root.extensions_used;
+        Ok(Self {
+            container: parts.container,
+            text,
+            rest: parts.rest,
+            storages,
+            accessors,
+            sharing,
+            extensions_used,
+            meshes,
+            nodes,
+            roots,
+        })
+    }
+
+    /// Writes the document: byte for byte what was read, except for positions that are not what
+    /// they were, and `min` and `max` of the accessors that contain them.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::TooLarge`] if new `min` and `max` make a GLB file exceed 4 GiB.
+    pub fn write(&self) -> Result<Written, DocumentError> {
+        let changed: Vec<Option<&[u8]>> = self.storages.iter().map(Storage::changed).collect();
+        let has_changed =
+            |region: &Region| changed.get(region.storage).is_some_and(Option::is_some);
+        let mut edits = Vec::new();
+        for accessor in self
+            .accessors
+            .iter()
+            .filter(|accessor| self.sharing.is_position(accessor.index))
+        {
+            if accessor.regions().any(has_changed) {
+                let slots = accessor.slots(&self.storages)?;
+                edits.extend(bounds::edits(accessor, &slots, &self.storages, &self.text));
+            }
+        }
+        let mut files = Files::new();
+        let mut binary = None;
+        for (storage, changed) in self.storages.iter().zip(changed) {
+            match (&storage.origin, changed) {
+                (Origin::Chunk, _) => binary = Some(storage.bytes()),
+                (Origin::DataUri(payload), Some(bytes)) => {
+                    let old = self.text.get(payload.clone()).unwrap_or_default();
+                    edits.push((
+                        payload.clone(),
+                        data_uri::replace(old, &storage.original, bytes),
+                    ));
+                }
+                (Origin::File(name), Some(bytes)) => {
+                    files.insert(name.clone(), bytes.to_vec());
+                }
+                (_, None) => {}
+            }
+        }
+        let mut text = bounds::splice(&self.text, edits);
+        if self.container == Container::Glb && text.len() != self.text.len() {
+            container::pad(&mut text);
+        }
+        let model = container::join(self.container, &text, binary, &self.rest)?;
+        Ok(Written { model, files })
+    }
+
+    /// How the model file is packed.
+    pub fn container(&self) -> Container {
+        self.container
+    }
+
+    /// The names in `extensionsUsed`.
+    pub fn extensions_used(&self) -> &[String] {
+        &self.extensions_used
+    }
+
+    /// The meshes; nodes and [`triangles`](Self::triangles) refer to them by index.
+    pub fn meshes(&self) -> &[Mesh] {
+        &self.meshes
+    }
+
+    /// The nodes. They form trees: none has two parents, none is its own descendant.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The root nodes of all scenes, each once, in ascending order; all nodes without a parent if
+    /// the file has no scene.
+    pub fn roots(&self) -> &[usize] {
+        &self.roots
+    }
+
+    /// The positions of an accessor, dequantized, with sparse values in place: one per element, in
+    /// the units of the file.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`] if no primitive uses the accessor as `POSITION`,
+    /// [`DocumentError::NonFinitePosition`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    pub fn positions(&self, accessor: usize) -> Result<Vec<[f64; 3]>, DocumentError> {
+        let accessor = self.position_accessor(accessor)?;
+        let slots = accessor.slots(&self.storages)?;
+        slots
+            .into_iter()
+            .enumerate()
+            .map(|(element, slot)| self.position(accessor, element, slot))
+            .collect()
+    }
+
+    /// The values that positions of an accessor can take.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`].
+    pub fn position_grid(&self, accessor: usize) -> Result<PositionGrid, DocumentError> {
+        let format = self.position_accessor(accessor)?.format;
+        let (min, max) = format.range();
+        Ok(if format.is_float() {
+            PositionGrid::Float32
+        } else {
+            PositionGrid::Integer {
+                step: 1.0 / format.scale(),
+                min,
+                max,
+            }
+        })
+    }
+
+    /// The bytes that store each element of a position accessor, `None` for elements that are zero
+    /// because a sparse accessor without a buffer view does not list them. Elements with equal slots,
+    /// of one accessor or of several, are the same bytes: a change of one is a change of all.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    pub fn slots(&self, accessor: usize) -> Result<Vec<Option<Slot>>, DocumentError> {
+        self.position_accessor(accessor)?.slots(&self.storages)
+    }
+
+    /// Whether each element of a position accessor has to keep its value: because it is not stored,
+    /// or because some of its bytes have another use as well (normals, indices, morph targets,
+    /// animations, images, data of unknown use, or positions that overlap it in part or in another
+    /// number format).
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    pub fn fixed_elements(&self, accessor: usize) -> Result<Vec<bool>, DocumentError> {
+        let accessor = self.position_accessor(accessor)?;
+        let slots = accessor.slots(&self.storages)?;
+        Ok(self.sharing.fixed(accessor, &slots, &self.accessors))
+    }
+
+    /// Whether the accessor holds positions of which at least one can be changed.
+    pub fn is_writable(&self, accessor: usize) -> bool {
+        self.fixed_elements(accessor)
+            .is_ok_and(|fixed| fixed.contains(&false))
+    }
+
+    /// The triangles of a primitive as indices into its positions, in the winding of the glTF 2.0
+    /// specification (section 3.7.2.1), from lists, strips and fans, indexed or not. Vertices left
+    /// over at the end form no triangle. Empty for points, lines, and primitives without positions.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`] if there is no such primitive, [`DocumentError::BadVertex`],
+    /// [`DocumentError::PrimitiveRestart`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    pub fn triangles(&self, mesh: usize, primitive: usize) -> Result<Vec<[u32; 3]>, DocumentError> {
+        let pointer = format!("/meshes/{mesh}/primitives/{primitive}");
+        match self
+            .meshes
+            .get(mesh)
+            .and_then(|mesh| mesh.primitives.get(primitive))
+        {
+            Some(primitive) => {
+                mesh::triangles(primitive, &self.accessors, &self.storages, &pointer)
+            }
+            None => Err(DocumentError::NotPositions { pointer }),
+        }
+    }
+
+    /// Stores new positions, one for every element of the accessor. Each component becomes the
+    /// nearest value of the accessor's [`grid`](Self::position_grid), within its range; bytes are
+    /// only touched where that value is not the stored one, so storing what
+    /// [`positions`](Self::positions) gave changes nothing. Elements of other accessors in the same
+    /// [`slots`](Self::slots) change as well; of elements given twice the later one counts.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::WrongLength`], [`DocumentError::NonFinitePosition`] and
+    /// [`DocumentError::FixedElement`] for a [fixed element](Self::fixed_elements) that would change,
+    /// as well as the errors of [`positions`](Self::positions). Nothing is stored then.
+    pub fn set_positions(
+        &mut self,
+        accessor: usize,
+        positions: &[[f64; 3]],
+    ) -> Result<(), DocumentError> {
+        let accessor = self.position_accessor(accessor)?;
+        let format = accessor.format;
+        if positions.len() != accessor.count {
+            return Err(DocumentError::WrongLength {
+                pointer: accessor.pointer(),
+                given: positions.len(),
+                count: accessor.count,
+            });
+        }
+        let slots = accessor.slots(&self.storages)?;
+        let fixed = self.sharing.fixed(accessor, &slots, &self.accessors);
+        let mut patches = Vec::new();
+        for (element, (position, (slot, fixed))) in positions
+            .iter()
+            .zip(slots.into_iter().zip(fixed))
+            .enumerate()
+        {
+            if !position.iter().all(|component| component.is_finite()) {
+                return Err(DocumentError::NonFinitePosition {
+                    pointer: accessor.pointer(),
+                    element,
+                });
+            }
+            let stored = self.position(accessor, element, slot)?;
+            let nearest = position.map(|component| format.nearest(component));
+            if nearest == stored {
+                continue;
+            }
+            match slot {
+                Some(slot) if !fixed => patches.push((slot, nearest, stored)),
+                _ => {
+                    return Err(DocumentError::FixedElement {
+                        pointer: accessor.pointer(),
+                        element,
+                    });
+                }
+            }
+        }
+        for (slot, nearest, stored) in patches {
+            let Some(storage) = self.storages.get_mut(slot.storage) else {
+                continue;
+            };
+            let size = format.component.size();
+            let offsets =
+                (0..3_usize).map(|axis| axis.saturating_mul(size).saturating_add(slot.offset));
+            for (offset, (new, old)) in offsets.zip(nearest.into_iter().zip(stored)) {
+                if new != old {
+                    storage.patch(offset, format.encode(new).get(..size).unwrap_or_default());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The accessor, if it holds positions.
+    fn position_accessor(&self, index: usize) -> Result<&Accessor, DocumentError> {
+        let accessor = self
+            .accessors
+            .get(index)
+            .filter(|_| self.sharing.is_position(index));
+        accessor.ok_or_else(|| DocumentError::NotPositions {
+            pointer: format!("/accessors/{index}"),
+        })
+    }
+
+    fn position(
+        &self,
+        accessor: &Accessor,
+        element: usize,
+        slot: Option<Slot>,
+    ) -> Result<[f64; 3], DocumentError> {
+        let raw = match slot {
+            Some(slot) => accessor.format.raw_position(&self.storages, slot),
+            None => Some([0.0; 3]),
+        };
+        let position = raw.map(|raw| raw.map(|component| accessor.format.normalize(component)));
+        position
+            .filter(|position| position.iter().all(|component| component.is_finite()))
+            .ok_or_else(|| DocumentError::NonFinitePosition {
+                pointer: accessor.pointer(),
+                element,
+            })
+    }
+}
+
+/// Refuses references to accessors and buffer views that nothing else resolves.
+fn check_references(
+    root: &Root,
+    accessors: &[Accessor],
+    views: &[View],
+) -> Result<(), DocumentError> {
+    for (index, image) in root.images.iter().enumerate() {
+        if let Some(view) = image.buffer_view {
+            item(views, view, "bufferViews", || {
+                format!("/images/{index}/bufferView")
+            })?;
+        }
+    }
+    for (index, animation) in root.animations.iter().enumerate() {
+        for (place, sampler) in animation.samplers.iter().enumerate() {
+            for (accessor, end) in [(sampler.input, "input"), (sampler.output, "output")] {
+                let pointer = || format!("/animations/{index}/samplers/{place}/{end}");
+                item(accessors, accessor, "accessors", pointer)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The item of a list of the file that an index refers to.
+fn item<'a, T>(
+    list: &'a [T],
+    index: u64,
+    name: &'static str,
+    pointer: impl Fn() -> String,
+) -> Result<(usize, &'a T), DocumentError> {
+    let position = usize::try_from(index).ok();
+    let item = position.and_then(|position| Some((position, list.get(position)?)));
+    item.ok_or_else(|| DocumentError::BadIndex {
+        pointer: pointer(),
+        list: name,
+        index,
+        count: list.len(),
+    })
+}

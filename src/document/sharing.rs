@@ -1,0 +1,146 @@
+//! Which bytes serve what, and so which vertices can be moved without damage to other data.
+//!
+//! A position is fixed if any of its bytes also belongs to something that is not a vertex position
+//! of the same number format: an accessor with another use (normals, indices, morph targets,
+//! animations, or no known use), an image, or a buffer view that only an extension can be using.
+//! Positions of two accessors may be the same bytes; then they are one position, and moving it
+//! through one accessor moves it in the other. Positions that overlap in part are fixed.
+
+use super::accessor::Accessor;
+use super::region::{Region, Slot, View};
+use super::schema::Root;
+
+/// The uses of the bytes of a document.
+pub(super) struct Sharing {
+    /// Whether each accessor holds the positions of some primitive.
+    is_position: Vec<bool>,
+    /// The elements that must not change, sorted.
+    occupied: Vec<Region>,
+}
+
+impl Sharing {
+    pub fn new(root: &Root, accessors: &[Accessor], views: &[View]) -> Self {
+        let mut is_position = vec![false; accessors.len()];
+        let mut has_other_use = vec![false; accessors.len()];
+        for primitive in root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
+            for (name, &accessor) in &primitive.attributes {
+                let uses = if name == "POSITION" {
+                    &mut is_position
+                } else {
+                    &mut has_other_use
+                };
+                mark(uses, accessor);
+            }
+            let targets = primitive.targets.iter().flat_map(|target| target.values());
+            targets
+                .chain(&primitive.indices)
+                .for_each(|&accessor| mark(&mut has_other_use, accessor));
+        }
+        for sampler in root
+            .animations
+            .iter()
+            .flat_map(|animation| &animation.samplers)
+        {
+            mark(&mut has_other_use, sampler.input);
+            mark(&mut has_other_use, sampler.output);
+        }
+        let instancing = root
+            .nodes
+            .iter()
+            .filter_map(|node| node.extensions.instancing.as_ref());
+        for accessor in instancing.flat_map(|instancing| instancing.attributes.values()) {
+            mark(&mut has_other_use, *accessor);
+        }
+
+        let mut occupied = Vec::new();
+        for (accessor, (is_position, has_other_use)) in
+            accessors.iter().zip(is_position.iter().zip(has_other_use))
+        {
+            if has_other_use || !is_position {
+                occupied.extend(accessor.regions().cloned());
+            }
+            occupied.extend(accessor.index_region().cloned());
+        }
+        occupied.extend(whole_views(root, views));
+        occupied.sort_unstable();
+        occupied.dedup();
+        Self {
+            is_position,
+            occupied,
+        }
+    }
+
+    /// Whether the accessor holds the positions of some primitive.
+    pub fn is_position(&self, accessor: usize) -> bool {
+        self.is_position.get(accessor) == Some(&true)
+    }
+
+    /// Whether each element of a position accessor has to stay as it is.
+    pub fn fixed(
+        &self,
+        accessor: &Accessor,
+        slots: &[Option<Slot>],
+        accessors: &[Accessor],
+    ) -> Vec<bool> {
+        let near = |region: &&Region| accessor.regions().any(|own| !own.apart(region));
+        let mut occupied: Vec<&Region> = self.occupied.iter().filter(near).collect();
+        let mut peers: Vec<&Region> = Vec::new();
+        for other in accessors
+            .iter()
+            .filter(|other| self.is_position(other.index))
+        {
+            let same_format = other.format == accessor.format;
+            let list = if same_format {
+                &mut peers
+            } else {
+                &mut occupied
+            };
+            list.extend(other.regions().filter(near));
+        }
+        peers.sort_unstable();
+        peers.dedup();
+        let size = accessor.regions().next().map_or(0, |region| region.size);
+        let is_fixed = |slot: Slot| {
+            occupied.iter().any(|region| region.overlaps(slot, size))
+                || peers
+                    .iter()
+                    .any(|peer| peer.overlaps(slot, size) && !peer.has(slot))
+        };
+        slots.iter().map(|slot| slot.is_none_or(is_fixed)).collect()
+    }
+}
+
+/// The buffer views of images, and those that nothing known refers to, as one element each.
+fn whole_views(root: &Root, views: &[View]) -> Vec<Region> {
+    let mut by_accessor = vec![false; views.len()];
+    for accessor in &root.accessors {
+        accessor
+            .buffer_view
+            .into_iter()
+            .for_each(|view| mark(&mut by_accessor, view));
+        if let Some(sparse) = &accessor.sparse {
+            mark(&mut by_accessor, sparse.indices.buffer_view);
+            mark(&mut by_accessor, sparse.values.buffer_view);
+        }
+    }
+    let mut by_image = vec![false; views.len()];
+    root.images
+        .iter()
+        .filter_map(|image| image.buffer_view)
+        .for_each(|view| mark(&mut by_image, view));
+
+    let uses = by_accessor.iter().zip(by_image);
+    let whole = views
+        .iter()
+        .zip(uses)
+        .filter(|(_, (by_accessor, by_image))| !**by_accessor || *by_image);
+    whole.filter_map(|(view, _)| view.whole()).collect()
+}
+
+/// Sets the flag of an item that is known to be in the list.
+fn mark(flags: &mut [bool], index: u64) {
+    let flag = usize::try_from(index)
+        .ok()
+        .and_then(|index| flags.get_mut(index));
+    flag.into_iter().for_each(|flag| *flag = true);
+}

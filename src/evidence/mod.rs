@@ -1,0 +1,75 @@
+//! Evidence: what a suspect says before any key is known. Measured once, kept, tested against as many keys as there are.
+//!
+//! Stored form (docs/FORMAT.md): `MMEV`, a version of 2 bytes, then one section a carrier: a tag of 4 bytes, the length of
+//! its content in 4 bytes, the content. All integers little-endian.
+
+use crate::carrier::ring;
+use crate::mesh::Mesh;
+
+const MAGIC: &[u8; 4] = b"MMEV";
+const VERSION: u16 = 1;
+const RING: &[u8; 4] = b"RING";
+
+/// Why bytes are not evidence.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvidenceError {
+    /// Something else.
+    #[error("this is not an evidence file")]
+    NotEvidence,
+    /// Evidence of a later version.
+    #[error("this evidence was measured by a later version (format {0}); this one reads format {VERSION}")]
+    Version(u16),
+    /// Cut short or damaged.
+    #[error("the evidence is damaged")]
+    Damaged,
+}
+
+impl EvidenceError {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            EvidenceError::NotEvidence => "evidence.not-evidence",
+            EvidenceError::Version(_) => "evidence.version",
+            EvidenceError::Damaged => "evidence.damaged",
+        }
+    }
+}
+
+/// A key-free measurement of a suspect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// What RING measured.
+    pub ring: ring::Measurement,
+}
+
+impl Evidence {
+    /// Measures a mesh.
+    pub fn measure(mesh: &Mesh) -> Evidence {
+        Evidence { ring: ring::Measurement::new(mesh) }
+    }
+
+    /// The evidence as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let content = self.ring.to_bytes();
+        let length = u32::try_from(content.len()).expect("20 bytes a ring, and indices of vertices have 32 bits");
+        [MAGIC.as_slice(), &VERSION.to_le_bytes(), RING, &length.to_le_bytes(), &content].concat()
+    }
+
+    /// Evidence from its bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Evidence, EvidenceError> {
+        let bytes = bytes.strip_prefix(MAGIC).ok_or(EvidenceError::NotEvidence)?;
+        let (version, bytes) = bytes.split_first_chunk().ok_or(EvidenceError::Damaged)?;
+        match u16::from_le_bytes(*version) {
+            VERSION => {}
+            other => return Err(EvidenceError::Version(other)),
+        }
+        let bytes = bytes.strip_prefix(RING).ok_or(EvidenceError::Damaged)?;
+        let (length, content) = bytes.split_first_chunk().ok_or(EvidenceError::Damaged)?;
+        if u32::from_le_bytes(*length) as usize != content.len() {
+            return Err(EvidenceError::Damaged);
+        }
+        let ring = ring::Measurement::from_bytes(content).ok_or(EvidenceError::Damaged)?;
+        Ok(Evidence { ring })
+    }
+}

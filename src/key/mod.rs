@@ -1,0 +1,119 @@
+//! From a passphrase to everything secret: Argon2id -> master key -> HKDF sub-keys by label -> keyed PRF of addresses.
+//!
+//! docs/FORMAT.md fixes every parameter here: a change would orphan all marks made before it.
+
+use argon2::{Algorithm, Argon2, Params, Version};
+use hkdf::Hkdf;
+use sha2::{Digest, Sha256};
+use siphasher::sip128::SipHasher24;
+use unicode_normalization::UnicodeNormalization;
+use zeroize::{Zeroize, ZeroizeOnDrop, Zeroizing};
+
+/// Argon2id's parameters: OWASP Password Storage Cheat Sheet, the first of its equivalent recommendations for
+/// machines that spare memory: 19 MiB, 2 passes, 1 lane.
+const MEMORY_KIB: u32 = 19 * 1024;
+const PASSES: u32 = 2;
+const LANES: u32 = 1;
+
+/// Separates this use of the hash functions, and this format, from every other.
+const DOMAIN: &[u8] = b"meshmark/1";
+
+/// Why a key was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum KeyError {
+    /// The owner's name has no character that is not white space.
+    #[error("the owner's name is empty")]
+    EmptyOwner,
+    /// The passphrase is empty.
+    #[error("the passphrase is empty")]
+    EmptyPassphrase,
+    /// A key file of another size.
+    #[error("a key file has exactly 32 bytes, this one has {0}")]
+    Length(usize),
+    /// Argon2id failed, which it does only where 19 MiB of memory cannot be had.
+    #[error("the key could not be derived: {0}")]
+    Derivation(String),
+}
+
+impl KeyError {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            KeyError::EmptyOwner => "key.empty-owner",
+            KeyError::EmptyPassphrase => "key.empty-passphrase",
+            KeyError::Length(_) => "key.length",
+            KeyError::Derivation(_) => "key.derivation",
+        }
+    }
+}
+
+/// An owner's secret, 32 bytes. Wiped from memory when dropped, never shown.
+#[derive(Clone, Zeroize, ZeroizeOnDrop)]
+pub struct Key([u8; Key::BYTES]);
+
+impl std::fmt::Debug for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Key(..)")
+    }
+}
+
+impl Key {
+    /// Bytes in a key and in a key file.
+    pub const BYTES: usize = 32;
+
+    /// A key from a key file's bytes: exactly 32, taken as they are.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Key, KeyError> {
+        bytes.try_into().map(Key).map_err(|_| KeyError::Length(bytes.len()))
+    }
+
+    /// A key from what a person can remember: Argon2id (RFC 9106) over the passphrase, salted with the owner's name.
+    ///
+    /// Both are brought to Unicode NFKC first, and white space around the name is dropped, so that the same words typed
+    /// on another keyboard give the same key. Upper and lower case are different. Takes tenths of a second, by design.
+    pub fn from_passphrase(owner: &str, passphrase: &str) -> Result<Key, KeyError> {
+        let owner: String = owner.nfkc().collect();
+        let passphrase = Zeroizing::new(passphrase.nfkc().collect::<String>());
+        if owner.trim().is_empty() {
+            return Err(KeyError::EmptyOwner);
+        }
+        if passphrase.is_empty() {
+            return Err(KeyError::EmptyPassphrase);
+        }
+        let salt = Sha256::new().chain_update(DOMAIN).chain_update(b"/owner/").chain_update(owner.trim()).finalize();
+        let derivation = |error: argon2::Error| KeyError::Derivation(error.to_string());
+        let params = Params::new(MEMORY_KIB, PASSES, LANES, Some(Key::BYTES)).map_err(derivation)?;
+        let mut key = Key([0; Key::BYTES]);
+        Argon2::new(Algorithm::Argon2id, Version::V0x13, params)
+            .hash_password_into(passphrase.as_bytes(), &salt, &mut key.0)
+            .map_err(derivation)?;
+        Ok(key)
+    }
+
+    /// The 32 bytes, for a key file. The caller answers for what becomes of them.
+    pub fn to_bytes(&self) -> Zeroizing<[u8; Key::BYTES]> {
+        Zeroizing::new(self.0)
+    }
+
+    /// The pseudo-random function of this key for one purpose: its own 16-byte sub-key by HKDF-SHA256 (RFC 5869),
+    /// so that what one purpose reveals says nothing of another.
+    pub fn prf(&self, label: &str) -> Prf {
+        let mut sub_key = Zeroizing::new([0; 16]);
+        Hkdf::<Sha256>::new(Some(DOMAIN), &self.0)
+            .expand(label.as_bytes(), &mut *sub_key)
+            .expect("16 bytes are fewer than HKDF's limit of 255 hashes");
+        Prf(sub_key)
+    }
+}
+
+/// A keyed pseudo-random function from a 64-bit address to 128 bits: SipHash-2-4-128 (Aumasson and Bernstein 2012).
+#[derive(Clone)]
+pub struct Prf(Zeroizing<[u8; 16]>);
+
+impl Prf {
+    /// The 128 bits that belong to an address (hashed as 8 little-endian bytes): (high, low).
+    pub fn at(&self, address: u64) -> (u64, u64) {
+        let hash = SipHasher24::new_with_key(&self.0).hash(&address.to_le_bytes());
+        (hash.h1, hash.h2)
+    }
+}

@@ -1,0 +1,186 @@
+//! Edges of a triangle soup, sorted: the equivalent of half-edges that accepts edges with any number of faces.
+
+use super::Mesh;
+
+/// One side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    low: u32,
+    high: u32,
+    face: u32,
+    /// The triangle runs from `low` to `high`.
+    ascending: bool,
+}
+
+/// All sides of all triangles, those of one edge side by side. Construction O(F log F), 16 bytes a side.
+pub struct Edges {
+    sides: Vec<Side>,
+    num_faces: usize,
+}
+
+impl Edges {
+    /// Collects the edges of a mesh.
+    pub fn new(mesh: &Mesh) -> Edges {
+        let mut sides: Vec<Side> = mesh
+            .triangles
+            .iter()
+            .enumerate()
+            .flat_map(|(face, &[a, b, c])| [(a, b), (b, c), (c, a)].map(|(from, to)| (face, from, to)))
+            .map(|(face, from, to)| Side {
+                low: from.min(to),
+                high: from.max(to),
+                face: face as u32,
+                ascending: from < to,
+            })
+            .collect();
+        sides.sort_unstable();
+        Edges { sides, num_faces: mesh.triangles.len() }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = &[Side]> {
+        self.sides.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
+    }
+
+    /// Edges with one face only.
+    pub fn num_boundary(&self) -> usize {
+        self.edges().filter(|sides| sides.len() == 1).count()
+    }
+
+    /// Edges with more than two faces.
+    pub fn num_non_manifold(&self) -> usize {
+        self.edges().filter(|sides| sides.len() > 2).count()
+    }
+
+    /// Sets of faces that are joined by edges.
+    pub fn num_components(&self) -> usize {
+        let mut parents: Vec<u32> = (0..self.num_faces as u32).collect();
+        let mut components = self.num_faces;
+        for sides in self.edges() {
+            for pair in sides.windows(2) {
+                let (a, b) = (find(&mut parents, pair[0].face), find(&mut parents, pair[1].face));
+                if a != b {
+                    parents[b as usize] = a;
+                    components -= 1;
+                }
+            }
+        }
+        components
+    }
+
+    /// Which faces to turn over so that neighbours across two-faced edges agree, the majority of each patch keeping its
+    /// winding. (The majority rather than the sign of a volume: a piece cut from a model must turn as the whole did.)
+    pub fn faces_to_flip(&self) -> Vec<bool> {
+        let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); self.num_faces];
+        for sides in self.edges() {
+            if let [a, b] = sides {
+                let differ = a.ascending == b.ascending;
+                neighbours[a.face as usize].push((b.face, differ));
+                neighbours[b.face as usize].push((a.face, differ));
+            }
+        }
+        let mut flips: Vec<Option<bool>> = vec![None; self.num_faces];
+        for seed in 0..self.num_faces {
+            if flips[seed].is_some() {
+                continue;
+            }
+            flips[seed] = Some(false);
+            let mut patch = vec![seed as u32];
+            let mut num_flipped = 0;
+            let mut next = 0;
+            while next < patch.len() {
+                let face = patch[next] as usize;
+                next += 1;
+                let flipped = flips[face] == Some(true);
+                num_flipped += usize::from(flipped);
+                for &(neighbour, differ) in &neighbours[face] {
+                    let flip = &mut flips[neighbour as usize];
+                    if flip.is_none() {
+                        *flip = Some(flipped ^ differ);
+                        patch.push(neighbour);
+                    }
+                }
+            }
+            if 2 * num_flipped > patch.len() {
+                for &face in &patch {
+                    let flip = &mut flips[face as usize];
+                    *flip = flip.map(|flipped| !flipped);
+                }
+            }
+        }
+        flips.into_iter().map(|flip| flip == Some(true)).collect()
+    }
+
+    /// The one-rings.
+    pub fn rings(&self, num_vertices: usize) -> Rings {
+        let mut valences = vec![0; num_vertices];
+        let mut closed = vec![true; num_vertices];
+        for sides in self.edges() {
+            for vertex in [sides[0].low as usize, sides[0].high as usize] {
+                valences[vertex] += 1;
+                closed[vertex] &= sides.len() == 2;
+            }
+        }
+        let mut starts = Vec::with_capacity(num_vertices + 1);
+        starts.push(0);
+        starts.extend(valences.iter().scan(0, |total, &valence| {
+            *total += valence;
+            Some(*total)
+        }));
+        let mut neighbours = vec![0; starts[num_vertices]];
+        let mut next = starts.clone();
+        for sides in self.edges() {
+            let (low, high) = (sides[0].low, sides[0].high);
+            for (vertex, neighbour) in [(low, high), (high, low)] {
+                let slot = &mut next[vertex as usize];
+                neighbours[*slot] = neighbour;
+                *slot += 1;
+            }
+        }
+        // Every face at a vertex has two of the vertex's sides, so with two faces an edge there are as many faces as edges.
+        let closed = closed.iter().zip(&valences).map(|(&closed, &valence)| closed && valence >= 3).collect();
+        Rings { starts, neighbours, closed }
+    }
+}
+
+fn find(parents: &mut [u32], mut face: u32) -> u32 {
+    while parents[face as usize] != face {
+        let grandparent = parents[parents[face as usize] as usize];
+        parents[face as usize] = grandparent;
+        face = grandparent;
+    }
+    face
+}
+
+/// The one-ring of every vertex: its neighbours, each once.
+pub struct Rings {
+    starts: Vec<usize>,
+    neighbours: Vec<u32>,
+    closed: Vec<bool>,
+}
+
+impl Rings {
+    /// The neighbours of a vertex, in an order that depends on vertex numbers only.
+    pub fn neighbours(&self, vertex: usize) -> &[u32] {
+        &self.neighbours[self.starts[vertex]..self.starts[vertex + 1]]
+    }
+
+    /// Neighbours of a vertex.
+    pub fn valence(&self, vertex: usize) -> usize {
+        self.starts[vertex + 1] - self.starts[vertex]
+    }
+
+    /// Whether the vertex has three faces or more and every edge at it has exactly two of them.
+    pub fn is_closed(&self, vertex: usize) -> bool {
+        self.closed[vertex]
+    }
+
+    /// Vertices.
+    pub fn len(&self) -> usize {
+        self.closed.len()
+    }
+
+    /// Whether there is no vertex.
+    pub fn is_empty(&self) -> bool {
+        self.closed.is_empty()
+    }
+}

@@ -1,0 +1,32 @@
+//! The data structure: positions, triangles, and how they hang together. Accepts what real assets contain: holes, edges
+//! with three faces and more, inconsistent winding, many components, isolated vertices.
+
+mod admissible;
+mod edges;
+pub mod shapes;
+
+pub use admissible::{Admissible, Orbit};
+pub use edges::{Edges, Rings};
+
+use glam::DVec3;
+
+/// A triangle mesh with V vertices and F triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// V positions, finite, in scene units.
+    pub positions: Vec<DVec3>,
+    /// F triples of distinct vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// The same triangles with other positions.
+    pub fn with_positions(&self, positions: Vec<DVec3>) -> Mesh {
+        Mesh { positions, triangles: self.triangles.clone() }
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+}

@@ -1,0 +1,86 @@
+//! Embedding: read, displace, write, and read the result back as any detector would.
+
+use super::{EmbedOptions, EmbedReport, Error, Verdict, extract, measure};
+use crate::bits::Payload;
+use crate::carrier::{Carrier, Host, Mark};
+use crate::code::{Checked, Codeword};
+use crate::digest::sha256;
+use crate::document::{Document, Files};
+use crate::geometry::{Distortion, diagonal};
+use crate::key::Key;
+use crate::progress::{Progress, Stage, step};
+use crate::scene::Scene;
+use glam::DVec3;
+
+/// A marked model.
+#[derive(Clone, Debug)]
+pub struct Embedding {
+    /// The main file: as the host's, but for positions and the bounds of their accessors.
+    pub model: Vec<u8>,
+    /// The external buffers that changed.
+    pub files: Files,
+    /// What was done, and what was read back.
+    pub report: EmbedReport,
+}
+
+/// Marks a model with a payload under a key.
+///
+/// `model` is a `.glb`, or a `.gltf` whose external buffers are in `files` by URI. The marked bytes are read back and
+/// tested before they are returned: a mark that cannot be found is [`Error::Unreadable`], and nothing is returned.
+pub fn embed(
+    model: &[u8],
+    files: &Files,
+    payload: Payload,
+    key: &Key,
+    options: &EmbedOptions,
+    progress: &mut dyn Progress,
+) -> Result<Embedding, Error> {
+    if options.carriers.is_empty() {
+        return Err(Error::NoCarrier);
+    }
+    step(progress, Stage::Read, 0.0)?;
+    let mut document = Document::read(model, files)?;
+    let scene = Scene::gather(&document)?;
+    step(progress, Stage::Read, 1.0)?;
+
+    let codeword = Codeword::new(Checked::new(key).message(payload));
+    let mark = Mark { key, codeword: &codeword };
+    let mut mesh = scene.mesh.clone();
+    for carrier in Carrier::ALL.into_iter().filter(|carrier| options.carriers.contains(carrier)) {
+        let host = Host { mesh: &mesh, admissible: &scene.admissible, rms_rel: options.strength.rms_rel() };
+        let displacement = carrier.embed(&host, &mark, progress)?;
+        mesh.positions.iter_mut().zip(displacement).for_each(|(position, d)| *position += d);
+    }
+
+    step(progress, Stage::Write, 0.0)?;
+    let displacement: Vec<DVec3> = mesh.positions.iter().zip(&scene.mesh.positions).map(|(a, b)| *a - *b).collect();
+    scene.scatter(&mut document, &displacement)?;
+    let distortion = Distortion::between(&scene.mesh.positions, &scene.positions_in(&document)?);
+    let written = document.write()?;
+    step(progress, Stage::Write, 1.0)?;
+
+    let mut marked_files = files.clone();
+    marked_files.extend(written.files.clone());
+    let evidence = measure(&written.model, &marked_files, progress)?;
+    step(progress, Stage::Test, 0.0)?;
+    let read_back = extract(&evidence, key);
+    step(progress, Stage::Test, 1.0)?;
+    if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
+        let addresses = read_back.carriers.iter().map(|carrier| carrier.addresses).sum();
+        return Err(Error::Unreadable { ln_p: read_back.ln_p, addresses });
+    }
+    let report = EmbedReport {
+        tag: payload.tag(),
+        number: payload.number(),
+        vertices: scene.mesh.positions.len(),
+        moved_vertices: distortion.num_moved,
+        diagonal: diagonal(&scene.mesh.positions),
+        rms_rel: distortion.rms_rel,
+        max_rel: distortion.max_rel,
+        strength: options.strength.rms_rel(),
+        read_back,
+        host_sha256: sha256(model),
+        marked_sha256: sha256(&written.model),
+    };
+    Ok(Embedding { model: written.model, files: written.files, report })
+}

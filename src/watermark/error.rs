@@ -1,0 +1,80 @@
+//! Every way in which a pipeline can fail.
+
+use crate::bits::PayloadError;
+use crate::carrier::CarrierError;
+use crate::document::DocumentError;
+use crate::evidence::EvidenceError;
+use crate::key::KeyError;
+use crate::progress::Cancelled;
+use crate::scene::SceneError;
+
+/// Why nothing was embedded, measured or read. "No mark found" is a result, not an error.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The file cannot be read, or cannot be read safely.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// The file holds nothing that a mark could be in.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The model cannot hold the mark.
+    #[error(transparent)]
+    Carrier(#[from] CarrierError),
+    /// The key was refused.
+    #[error(transparent)]
+    Key(#[from] KeyError),
+    /// The payload was refused.
+    #[error(transparent)]
+    Payload(#[from] PayloadError),
+    /// The evidence cannot be read.
+    #[error(transparent)]
+    Evidence(#[from] EvidenceError),
+    /// A strength outside its range.
+    #[error("strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}")]
+    Strength(String),
+    /// No carrier was chosen.
+    #[error("no carrier was chosen")]
+    NoCarrier,
+    /// The marked model was read back, and its mark was not found: nothing was written.
+    #[error(
+        "the mark could not be read back from the marked model (ln p = {ln_p:.1}, which had to be below -20.7), so nothing \
+         was written; the model has {addresses} distinct neighbourhoods to carry it: try a greater strength"
+    )]
+    Unreadable {
+        /// The bound that was reached.
+        ln_p: f64,
+        /// Distinct addresses of the marked model.
+        addresses: usize,
+    },
+    /// The caller asked to stop; nothing was changed.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Document(error) => error.code(),
+            Error::Scene(error) => error.code(),
+            Error::Carrier(error) => error.code(),
+            Error::Key(error) => error.code(),
+            Error::Payload(error) => error.code(),
+            Error::Evidence(error) => error.code(),
+            Error::Strength(_) => "options.strength",
+            Error::NoCarrier => "options.no-carrier",
+            Error::Unreadable { .. } => "watermark.unreadable",
+            Error::Cancelled(_) => "aborted",
+        }
+    }
+
+    /// Where in the document, as a JSON pointer (RFC 6901).
+    pub fn pointer(&self) -> Option<&str> {
+        match self {
+            Error::Document(error) => error.pointer(),
+            Error::Scene(SceneError::Document(error)) => error.pointer(),
+            _ => None,
+        }
+    }
+}

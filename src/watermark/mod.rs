@@ -1,0 +1,15 @@
+//! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
+
+mod embed;
+mod error;
+mod extract;
+mod inspect;
+mod options;
+mod report;
+
+pub use embed::{Embedding, embed};
+pub use error::Error;
+pub use extract::{extract, measure, verify};
+pub use inspect::{CarrierCapacity, Inspection, inspect};
+pub use options::{EmbedOptions, Strength};
+pub use report::{CarrierReading, EmbedReport, Extraction, Verdict};

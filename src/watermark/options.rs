@@ -1,0 +1,57 @@
+//! What a caller may choose.
+
+use super::Error;
+use crate::carrier::Carrier;
+
+/// Options of [`embed`](super::embed).
+#[derive(Clone, Debug, PartialEq)]
+pub struct EmbedOptions {
+    /// Default: [`Strength::BALANCED`].
+    pub strength: Strength,
+    /// Which carriers to use, in any order; repetitions do not matter. Default: all.
+    pub carriers: Vec<Carrier>,
+}
+
+impl Default for EmbedOptions {
+    fn default() -> Self {
+        EmbedOptions { strength: Strength::BALANCED, carriers: Carrier::ALL.to_vec() }
+    }
+}
+
+/// Limit of the RMS displacement over all vertices, as a fraction of the bounding box's diagonal. A carrier that needs
+/// less takes less: RING's step is a fraction of an edge, so on dense meshes it stays far below.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Strength(f64);
+
+impl Strength {
+    /// 0.02 % of the diagonal.
+    pub const SUBTLE: Strength = Strength(0.0002);
+    /// 0.04 % of the diagonal.
+    pub const BALANCED: Strength = Strength(0.0004);
+    /// 0.08 % of the diagonal.
+    pub const STRONG: Strength = Strength(0.0008);
+
+    /// A strength from 0.00001 to 0.01.
+    pub fn new(rms_rel: f64) -> Result<Strength, Error> {
+        if (1e-5..=1e-2).contains(&rms_rel) { Ok(Strength(rms_rel)) } else { Err(Error::Strength(rms_rel.to_string())) }
+    }
+
+    /// The fraction.
+    pub fn rms_rel(self) -> f64 {
+        self.0
+    }
+}
+
+impl std::str::FromStr for Strength {
+    type Err = Error;
+
+    /// A preset's name or a number.
+    fn from_str(text: &str) -> Result<Strength, Error> {
+        match text {
+            "subtle" => Ok(Strength::SUBTLE),
+            "balanced" => Ok(Strength::BALANCED),
+            "strong" => Ok(Strength::STRONG),
+            _ => text.parse().map_err(|_| Error::Strength(text.to_owned())).and_then(Strength::new),
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What people and programs are told. The fields' names in camel case are JavaScript's: see `src/wasm/types.d.ts`.
+
+use crate::carrier::Carrier;
+use serde::Serialize;
+
+/// The answer to "does this model carry this key's mark?".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// A payload was read, and the chance of that without the key is at most 1e-9.
+    Found,
+    /// Something of this key is there, but not enough.
+    Partial,
+    /// No evidence of this key, which does not prove that the model is not its owner's.
+    None,
+    /// The model has too little geometry to answer.
+    CannotCheck,
+}
+
+impl Verdict {
+    /// The verdict in words for a person.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Verdict::Found => "Your mark was found.",
+            Verdict::Partial => "A mark fits partly.",
+            Verdict::None => "No evidence of this key. This does not prove that the model is not yours.",
+            Verdict::CannotCheck => "Cannot check.",
+        }
+    }
+}
+
+/// What one carrier says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct CarrierReading {
+    /// Which carrier.
+    pub name: Carrier,
+    /// Natural logarithm of the bound of the false-positive probability, this carrier's choices charged; at most 0.
+    pub ln_p: f64,
+    /// The payload as a tag, where one was read (or, in a test of an expected one, where it fits).
+    pub tag: Option<String>,
+    /// The payload as a number.
+    pub number: Option<u64>,
+    /// Weighted agreement of the symbols with that payload: 1 is perfect, 0 is chance.
+    pub agreement: f64,
+    /// Distinct addresses that were there to be read.
+    pub addresses: usize,
+    /// How many of them are this key's.
+    pub owned_addresses: usize,
+}
+
+/// A reading of evidence with a key.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Extraction {
+    /// The answer.
+    pub verdict: Verdict,
+    /// The answer in words.
+    pub sentence: &'static str,
+    /// Why it is not `found`.
+    pub reason: Option<String>,
+    /// The payload as a tag.
+    pub tag: Option<String>,
+    /// The payload as a number.
+    pub number: Option<u64>,
+    /// Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0.
+    pub ln_p: f64,
+    /// Agreement of the carrier that speaks loudest.
+    pub agreement: f64,
+    /// Every carrier's own reading.
+    pub carriers: Vec<CarrierReading>,
+}
+
+/// What an embedding did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct EmbedReport {
+    /// The payload as a tag; `None` for the one number that has none.
+    pub tag: Option<String>,
+    /// The payload as a number.
+    pub number: u64,
+    /// Welded vertices of the scene.
+    pub vertices: usize,
+    /// How many of them moved.
+    pub moved_vertices: usize,
+    /// Diagonal of the host's bounding box, in scene units.
+    pub diagonal: f64,
+    /// RMS displacement over all vertices, as a fraction of that diagonal.
+    pub rms_rel: f64,
+    /// Maximum displacement, as a fraction of that diagonal.
+    pub max_rel: f64,
+    /// The strength that was asked for.
+    pub strength: f64,
+    /// The output, read again from its bytes.
+    pub read_back: Extraction,
+    /// SHA-256 of the main file before.
+    pub host_sha256: String,
+    /// SHA-256 of the main file after.
+    pub marked_sha256: String,
+}

@@ -59,7 +59,7 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
         });
     }
 
-    let (kind, json, mut body) = chunk(body)?;
+    let [kind, json, mut body] = chunk(body)?;
     if kind != JSON {
         return Err(DocumentError::BadContainer {
             detail: "its first chunk is not JSON".into(),
@@ -67,7 +67,7 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
     }
     let mut binary = None;
     if !body.is_empty() {
-        let (kind, data, rest) = chunk(body)?;
+        let [kind, data, rest] = chunk(body)?;
         if kind == BIN {
             binary = Some(data.to_vec());
             body = rest;
@@ -75,7 +75,7 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
     }
     let mut unread = body;
     while !unread.is_empty() {
-        (_, _, unread) = chunk(unread)?;
+        [_, _, unread] = chunk(unread)?;
     }
     Ok(Parts {
         container: Container::Glb,
@@ -140,7 +140,7 @@ pub(super) fn pad(text: &mut String) {
 }
 
 /// The first chunk's type and content, and the bytes after it.
-fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), DocumentError> {
+fn chunk(bytes: &[u8]) -> Result<[&[u8]; 3], DocumentError> {
     let (header, data) = bytes
         .split_at_checked(8)
         .ok_or_else(|| truncated("a GLB chunk's header", 8, bytes.len()))?;
@@ -149,7 +149,7 @@ fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), DocumentError> {
         .ok()
         .and_then(|length| data.split_at_checked(length))
         .ok_or_else(|| truncated("a GLB chunk", u64::from(length), data.len()))?;
-    Ok((header.get(4..).unwrap_or_default(), content, rest))
+    Ok([header.get(4..).unwrap_or_default(), content, rest])
 }
 
 /// The little-endian word at `offset`, or 0 if the bytes end before it.

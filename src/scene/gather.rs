@@ -1,6 +1,6 @@
 //! Document -> Scene.
 
-use super::{Placement, Scene, SceneError, orbits};
+use super::{MAX_ELEMENTS, Placement, Scene, SceneError, orbits};
 use crate::document::{Document, Node, Transform};
 use crate::mesh::Mesh;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
@@ -84,6 +84,10 @@ impl Gathering {
         to_world: DAffine3,
     ) -> Result<usize, SceneError> {
         let locals = document.positions(accessor)?;
+        let num_elements: usize = self.worlds.iter().map(Vec::len).sum();
+        if num_elements.saturating_add(locals.len()) > MAX_ELEMENTS {
+            return Err(SceneError::TooLarge);
+        }
         let worlds: Vec<DVec3> = locals.into_iter().map(|p| to_world.transform_point3(DVec3::from_array(p))).collect();
         if !worlds.iter().all(|world| world.is_finite()) {
             return Err(SceneError::NotFinite { node });
@@ -112,7 +116,6 @@ impl Gathering {
                 order.push(corner);
             }
         }
-        u32::try_from(order.len()).map_err(|_| SceneError::TooLarge)?;
         let mut sorted: Vec<([u64; 3], usize)> = order.iter().map(|&corner| bits(world(corner))).zip(0..).collect();
         sorted.sort_unstable();
         let mut first = vec![0; order.len()];

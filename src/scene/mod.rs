@@ -9,12 +9,16 @@ mod gather;
 mod orbits;
 mod plain;
 mod scatter;
+mod uses;
 
 pub use plain::to_glb;
 
 use crate::document::DocumentError;
 use crate::mesh::{Admissible, Mesh};
 use glam::{DAffine3, DMat3};
+
+/// Elements of all placements together. Small files can ask for more, by showing the same bytes many times.
+pub const MAX_ELEMENTS: usize = 1 << 24;
 
 /// Why there is no mesh in a document.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,8 +36,8 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
-    /// More vertices than indices of 32 bits can name.
-    #[error("the scene has more than 4294967295 corners")]
+    /// More than fits into a browser tab's memory.
+    #[error("the scene has more than {MAX_ELEMENTS} vertices, every instance counted")]
     TooLarge,
 }
 

@@ -1,6 +1,7 @@
 //! Which vertices must move together, and which cannot move.
 
 use super::Placement;
+use super::uses::uses;
 use crate::document::{Document, DocumentError};
 use crate::mesh::{Admissible, Orbit};
 use glam::DMat3;
@@ -57,18 +58,11 @@ fn unwritable(document: &Document, placements: &[Placement], num_vertices: usize
 
 /// For each vertex that shares an element's bytes with another, the links from it.
 fn links(document: &Document, placements: &[Placement]) -> Result<BTreeMap<u32, Vec<Link>>, DocumentError> {
-    let mut uses = Vec::new();
-    for (placement, shown) in placements.iter().enumerate() {
-        let slots = document.slots(shown.accessor)?;
-        let stored = slots.into_iter().zip(&shown.vertices);
-        uses.extend(stored.filter_map(|(slot, vertex)| Some((slot?, placement, (*vertex)?))));
-    }
-    uses.sort_unstable();
     let mut links: BTreeMap<u32, Vec<Link>> = BTreeMap::new();
-    for uses in uses.chunk_by(|a, b| a.0 == b.0) {
-        let (_, first, a) = uses[0];
-        for &(_, other, b) in &uses[1..] {
-            let (first, other) = (&placements[first], &placements[other]);
+    for uses in uses(document, placements)?.chunk_by(|a, b| a.slot == b.slot) {
+        let (a, first) = (uses[0].vertex, &placements[uses[0].placement]);
+        for other in &uses[1..] {
+            let (b, other) = (other.vertex, &placements[other.placement]);
             let (Some(to_first), Some(to_other)) = (first.to_local, other.to_local) else { continue };
             links.entry(a).or_default().push((b, other.to_world.matrix3 * to_first));
             links.entry(b).or_default().push((a, first.to_world.matrix3 * to_other));

@@ -1,36 +1,28 @@
 //! Scene -> Document: displacements back to every element, positions from a changed document.
 
+use super::uses::uses;
 use super::{Scene, SceneError};
 use crate::document::Document;
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 impl Scene {
     /// Displaces the document's elements as V admissible displacements of the vertices say. Each coordinate is rounded to
     /// what its accessor can hold.
     pub fn scatter(&self, document: &mut Document, displacement: &[DVec3]) -> Result<(), SceneError> {
-        let mut changed: BTreeMap<usize, Vec<[f64; 3]>> = BTreeMap::new();
-        // Placements of one accessor agree about its elements, for the displacement is admissible: the first that shows an
-        // element moves it.
-        let mut moved: BTreeMap<usize, Vec<bool>> = BTreeMap::new();
-        for placement in &self.placements {
-            let Some(to_local) = placement.to_local else { continue };
-            let accessor = placement.accessor;
-            if !changed.contains_key(&accessor) {
-                let positions = document.positions(accessor)?;
-                moved.insert(accessor, vec![false; positions.len()]);
-                changed.insert(accessor, positions);
-            }
-            let (Some(positions), Some(moved)) = (changed.get_mut(&accessor), moved.get_mut(&accessor)) else { continue };
-            for ((vertex, position), moved) in placement.vertices.iter().zip(positions).zip(moved) {
-                let d = vertex.and_then(|vertex| displacement.get(vertex as usize)).copied().unwrap_or_default();
-                if d != DVec3::ZERO && !std::mem::replace(moved, true) {
-                    *position = (DVec3::from_array(*position) + to_local * d).to_array();
-                }
+        let mut moves: Vec<Vec<(usize, DVec3)>> = vec![Vec::new(); self.placements.len()];
+        for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
+            // The displacement is admissible, so all uses of an element agree about it: the first moves it.
+            let first = uses[0];
+            if let Some(to_local) = self.placements[first.placement].to_local {
+                moves[first.placement].push((first.element, to_local * displacement[first.vertex as usize]));
             }
         }
-        for (accessor, positions) in changed {
-            document.set_positions(accessor, &positions)?;
+        for (placement, moves) in self.placements.iter().zip(moves) {
+            let mut positions = document.positions(placement.accessor)?;
+            for (element, d) in moves {
+                positions[element] = (DVec3::from_array(positions[element]) + d).to_array();
+            }
+            document.set_positions(placement.accessor, &positions)?;
         }
         Ok(())
     }

@@ -1,0 +1,30 @@
+//! Which vertices are made of which bytes.
+
+use super::Placement;
+use crate::document::{Document, DocumentError, Slot};
+
+/// One element as one placement shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Use {
+    /// The element's bytes: equal for elements, of whatever accessors, that are the same.
+    pub slot: Slot,
+    /// Index of the placement.
+    pub placement: usize,
+    /// Index of the element in the placement's accessor.
+    pub element: usize,
+    /// The vertex that it is part of.
+    pub vertex: u32,
+}
+
+/// All uses of stored elements, those of one slot side by side, placements ascending.
+pub fn uses(document: &Document, placements: &[Placement]) -> Result<Vec<Use>, DocumentError> {
+    let mut uses = Vec::new();
+    for (placement, shown) in placements.iter().enumerate() {
+        let slots = document.slots(shown.accessor)?.into_iter().enumerate();
+        uses.extend(slots.zip(&shown.vertices).filter_map(|((element, slot), vertex)| {
+            Some(Use { slot: slot?, placement, element, vertex: (*vertex)? })
+        }));
+    }
+    uses.sort_unstable();
+    Ok(uses)
+}

@@ -1,0 +1,197 @@
+//! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
+//!
+//! `types.d.ts` beside this file is the contract; the package's tests hold it to what is exported. Bytes cross as
+//! `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
+
+use crate::watermark::{self, Error, Strength};
+use crate::{Carrier, EmbedOptions, Evidence, Files, Key, Payload, Progress, Stage};
+use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use serde::Serialize;
+use std::ops::ControlFlow;
+use wasm_bindgen::prelude::*;
+use web_sys::AbortSignal;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("types.d.ts");
+
+/// 32 bytes from an owner's name and passphrase.
+#[wasm_bindgen(js_name = deriveKey, skip_typescript)]
+pub fn derive_key(owner: &str, passphrase: &str) -> Result<Vec<u8>, JsValue> {
+    let key = Key::from_passphrase(owner, passphrase).map_err(Error::from).map_err(thrown)?;
+    Ok(key.to_bytes().to_vec())
+}
+
+/// Marks a model.
+#[wasm_bindgen(skip_typescript)]
+pub fn embed(
+    model: &[u8],
+    files: JsValue,
+    payload: JsValue,
+    key: &[u8],
+    options: JsValue,
+    on_progress: Option<Function>,
+    signal: Option<AbortSignal>,
+) -> Result<Object, JsValue> {
+    let mut listener = Listener { on_progress, signal };
+    let key = key_from(key)?;
+    let (payload, options, files) = (payload_from(&payload)?, options_from(&options)?, files_from(&files)?);
+    let embedding = watermark::embed(model, &files, payload, &key, &options, &mut listener).map_err(thrown)?;
+    let marked_files = Object::new();
+    for (name, bytes) in &embedding.files {
+        set(&marked_files, name, &Uint8Array::from(bytes.as_slice()))?;
+    }
+    let result = Object::new();
+    set(&result, "model", &Uint8Array::from(embedding.model.as_slice()))?;
+    set(&result, "files", &marked_files)?;
+    set(&result, "report", &encoded(&embedding.report)?)?;
+    Ok(result)
+}
+
+/// Measures a suspect.
+#[wasm_bindgen(skip_typescript)]
+pub fn measure(
+    model: &[u8],
+    files: JsValue,
+    on_progress: Option<Function>,
+    signal: Option<AbortSignal>,
+) -> Result<Vec<u8>, JsValue> {
+    let mut listener = Listener { on_progress, signal };
+    let evidence = watermark::measure(model, &files_from(&files)?, &mut listener).map_err(thrown)?;
+    Ok(evidence.to_bytes())
+}
+
+/// Reads a payload.
+#[wasm_bindgen(skip_typescript)]
+pub fn extract(evidence: &[u8], key: &[u8]) -> Result<JsValue, JsValue> {
+    encoded(&watermark::extract(&evidence_from(evidence)?, &key_from(key)?))
+}
+
+/// Tests an expected payload.
+#[wasm_bindgen(skip_typescript)]
+pub fn verify(evidence: &[u8], key: &[u8], expected: JsValue) -> Result<JsValue, JsValue> {
+    encoded(&watermark::verify(&evidence_from(evidence)?, &key_from(key)?, payload_from(&expected)?))
+}
+
+/// Describes a model.
+#[wasm_bindgen(skip_typescript)]
+pub fn inspect(model: &[u8], files: JsValue) -> Result<JsValue, JsValue> {
+    encoded(&watermark::inspect(model, &files_from(&files)?).map_err(thrown)?)
+}
+
+/// A generated model.
+#[wasm_bindgen(js_name = demoModel, skip_typescript)]
+pub fn demo_model() -> Vec<u8> {
+    crate::demo_model()
+}
+
+/// The version of this module.
+#[wasm_bindgen(skip_typescript)]
+pub fn version() -> String {
+    env!("CARGO_PKG_VERSION").to_owned()
+}
+
+/// A caller's callback and signal.
+struct Listener {
+    on_progress: Option<Function>,
+    signal: Option<AbortSignal>,
+}
+
+impl Progress for Listener {
+    fn report(&mut self, stage: Stage, fraction: f64) -> ControlFlow<()> {
+        let heard = self.on_progress.as_ref().map(|f| f.call2(&JsValue::NULL, &stage.name().into(), &fraction.into()));
+        // A callback that throws has asked for the work to stop.
+        let stopped = matches!(heard, Some(Err(_))) || self.signal.as_ref().is_some_and(AbortSignal::aborted);
+        if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
+    Key::from_bytes(bytes).map_err(Error::from).map_err(thrown)
+}
+
+fn evidence_from(bytes: &[u8]) -> Result<Evidence, JsValue> {
+    Evidence::from_bytes(bytes).map_err(Error::from).map_err(thrown)
+}
+
+/// A string is a tag, a number a number.
+fn payload_from(value: &JsValue) -> Result<Payload, JsValue> {
+    let payload = match (value.as_string(), value.as_f64()) {
+        (Some(tag), _) => Payload::from_tag(&tag),
+        (None, Some(number)) if number >= 0.0 && number.fract() == 0.0 && number < (1u64 << Payload::BITS) as f64 => {
+            Payload::from_number(number as u64)
+        }
+        _ => Payload::from_number(u64::MAX),
+    };
+    payload.map_err(Error::from).map_err(thrown)
+}
+
+fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
+    let mut options = EmbedOptions::default();
+    let strength = field(value, "strength");
+    if let Some(name) = strength.as_string() {
+        options.strength = name.parse().map_err(thrown)?;
+    } else if let Some(rms_rel) = strength.as_f64() {
+        options.strength = Strength::new(rms_rel).map_err(thrown)?;
+    } else if !strength.is_undefined() {
+        return Err(thrown(Error::Strength(format!("{strength:?}"))));
+    }
+    let carriers = field(value, "carriers");
+    if !carriers.is_undefined() {
+        let name = |name: JsValue| {
+            let known = name.as_string().and_then(|name| Carrier::from_name(&name));
+            known.ok_or_else(|| argument(&format!("there is no carrier {name:?}")))
+        };
+        let names = carriers.dyn_into::<Array>().map_err(|_| argument("carriers is an array of names"))?;
+        options.carriers = names.iter().map(name).collect::<Result<_, _>>()?;
+    }
+    Ok(options)
+}
+
+/// `undefined`, `null`, or an object of byte arrays.
+fn files_from(value: &JsValue) -> Result<Files, JsValue> {
+    if value.is_undefined() || value.is_null() {
+        return Ok(Files::new());
+    }
+    let files = value.dyn_ref::<Object>().ok_or_else(|| argument("files is an object of byte arrays"))?;
+    let entry = |entry: JsValue| {
+        let entry = Array::from(&entry);
+        let bytes = entry.get(1).dyn_into::<Uint8Array>().map_err(|_| argument("files are byte arrays"))?;
+        Ok((entry.get(0).as_string().unwrap_or_default(), bytes.to_vec()))
+    };
+    Object::entries(files).iter().map(entry).collect()
+}
+
+/// A property, `undefined` where the value is no object.
+fn field(value: &JsValue, name: &str) -> JsValue {
+    Reflect::get(value, &name.into()).unwrap_or(JsValue::UNDEFINED)
+}
+
+fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
+    Reflect::set(object, &name.into(), value).map(drop)
+}
+
+/// A report as a plain object: `null` for what is not there, numbers for whole numbers below 2^53.
+fn encoded(report: &impl Serialize) -> Result<JsValue, JsValue> {
+    let serializer = serde_wasm_bindgen::Serializer::json_compatible();
+    report.serialize(&serializer).map_err(|error| argument(&error.to_string()))
+}
+
+/// An error as JavaScript sees it.
+fn thrown(error: Error) -> JsValue {
+    failure(error.code(), &error.to_string(), error.pointer())
+}
+
+/// The error of a call whose arguments are not what types.d.ts says.
+fn argument(message: &str) -> JsValue {
+    failure("options.argument", message, None)
+}
+
+fn failure(code: &str, message: &str, path: Option<&str>) -> JsValue {
+    #[derive(Serialize)]
+    struct Failure<'a> {
+        code: &'a str,
+        message: &'a str,
+        path: Option<&'a str>,
+    }
+    encoded(&Failure { code, message, path }).unwrap_or(JsValue::UNDEFINED)
+}

@@ -12,7 +12,9 @@ pub struct Payload(u64);
 #[non_exhaustive]
 pub enum PayloadError {
     /// A tag with a character outside the alphabet.
-    #[error("a tag is made of the letters A-Z and a-z, the digits 0-9, '-' and '.'; {0:?} is none of them")]
+    #[error(
+        "a tag is made of the letters A-Z and a-z, the digits 0-9, '-' and '.'; {0:?} is none of them"
+    )]
     Character(char),
     /// An empty tag, or one of more than 8 characters.
     #[error("a tag has 1 to 8 characters, this one has {0}")]
@@ -47,7 +49,11 @@ impl Payload {
 
     /// A payload from a whole number below 2^48.
     pub fn from_number(number: u64) -> Result<Payload, PayloadError> {
-        if number >> Self::BITS == 0 { Ok(Payload(number)) } else { Err(PayloadError::Range) }
+        if number >> Self::BITS == 0 {
+            Ok(Payload(number))
+        } else {
+            Err(PayloadError::Range)
+        }
     }
 
     /// A payload from a tag of 1 to 8 characters.
@@ -59,9 +65,17 @@ impl Payload {
         if tag.ends_with(FILLER) {
             return Err(PayloadError::TrailingDot);
         }
-        let filled = tag.chars().chain(std::iter::repeat(FILLER)).take(CHARACTERS);
+        let filled = tag
+            .chars()
+            .chain(std::iter::repeat(FILLER))
+            .take(CHARACTERS);
         filled
-            .map(|c| ALPHABET.iter().position(|&a| char::from(a) == c).ok_or(PayloadError::Character(c)))
+            .map(|c| {
+                ALPHABET
+                    .iter()
+                    .position(|&a| char::from(a) == c)
+                    .ok_or(PayloadError::Character(c))
+            })
             .try_fold(0, |bits, digit| Ok(bits << 6 | digit? as u64))
             .map(Payload)
     }
@@ -73,7 +87,9 @@ impl Payload {
 
     /// The payload as a tag; `None` for the one number, 2^48 - 1, whose tag would be empty.
     pub fn tag(self) -> Option<String> {
-        let digits = (0..CHARACTERS).rev().map(|i| (self.0 >> (6 * i) & 63) as usize);
+        let digits = (0..CHARACTERS)
+            .rev()
+            .map(|i| (self.0 >> (6 * i) & 63) as usize);
         let tag: String = digits.map(|digit| char::from(ALPHABET[digit])).collect();
         let tag = tag.trim_end_matches(FILLER);
         (!tag.is_empty()).then(|| tag.to_owned())

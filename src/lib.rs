@@ -22,6 +22,7 @@
 //!
 //! The rooms of the house, and who may know whom, are in docs/ARCHITECTURE.md; what may never change is in docs/FORMAT.md.
 
+pub mod attack;
 mod bits;
 pub mod carrier;
 pub mod code;
@@ -33,6 +34,7 @@ pub mod geometry;
 pub mod key;
 pub mod mesh;
 mod progress;
+mod random;
 pub mod scene;
 mod watermark;
 
@@ -46,8 +48,8 @@ pub use evidence::Evidence;
 pub use key::Key;
 pub use progress::{Cancelled, Progress, Stage, ignore};
 pub use watermark::{
-    CarrierCapacity, CarrierReading, EmbedOptions, EmbedReport, Embedding, Error, Extraction, Inspection, Strength, Verdict,
-    embed, extract, inspect, measure, verify,
+    CarrierCapacity, CarrierReading, EmbedOptions, EmbedReport, Embedding, Error, Extraction,
+    Inspection, Strength, Verdict, embed, extract, inspect, measure, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -53,7 +53,11 @@ pub fn ignore(_: Stage, _: f64) -> ControlFlow<()> {
 pub struct Cancelled;
 
 /// Reports, and turns a request to stop into an error that `?` carries up.
-pub(crate) fn step(progress: &mut dyn Progress, stage: Stage, fraction: f64) -> Result<(), Cancelled> {
+pub(crate) fn step(
+    progress: &mut dyn Progress,
+    stage: Stage,
+    fraction: f64,
+) -> Result<(), Cancelled> {
     match progress.report(stage, fraction) {
         ControlFlow::Continue(()) => Ok(()),
         ControlFlow::Break(()) => Err(Cancelled),

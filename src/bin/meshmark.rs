@@ -5,8 +5,8 @@
 use clap::{Args, Parser, Subcommand};
 use meshmark::document::DocumentError;
 use meshmark::{
-    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage, Strength, Verdict, embed,
-    extract, inspect, measure, verify,
+    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage,
+    Strength, Verdict, embed, extract, inspect, measure, verify,
 };
 use serde_json::{Map, Value, json};
 use std::error::Error as StdError;
@@ -22,7 +22,10 @@ const CANNOT_CHECK: u8 = 2;
 
 /// Invisible, keyed, robust watermarks in the geometry of glTF models
 #[derive(Parser)]
-#[command(version, after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input.")]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -134,7 +137,14 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(Value, u8), Failure> {
     let mut clock = Clock::new();
     match command {
-        Command::Embed { input, output, owner, payload, strength, carriers } => {
+        Command::Embed {
+            input,
+            output,
+            owner,
+            payload,
+            strength,
+            carriers,
+        } => {
             let payload = payload.read()?;
             let key = owner.key()?;
             let options = EmbedOptions { strength, carriers };
@@ -152,7 +162,11 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             clock.start("test");
             judge(&extract(&evidence, &key), clock)
         }
-        Command::Verify { input, owner, payload } => {
+        Command::Verify {
+            input,
+            owner,
+            payload,
+        } => {
             let payload = payload.read()?;
             let key = owner.key()?;
             let evidence = evidence(&input, &mut clock)?;
@@ -201,7 +215,12 @@ fn snake_case(value: Value) -> Value {
         })
     };
     match value {
-        Value::Object(fields) => Value::Object(fields.into_iter().map(|(k, v)| (rename(k), snake_case(v))).collect()),
+        Value::Object(fields) => Value::Object(
+            fields
+                .into_iter()
+                .map(|(k, v)| (rename(k), snake_case(v)))
+                .collect(),
+        ),
         Value::Array(items) => items.into_iter().map(snake_case).collect(),
         other => other,
     }
@@ -226,7 +245,9 @@ impl Owner {
     fn key(&self) -> Result<Key, Failure> {
         let key = match (&self.key_file, &self.owner) {
             (Some(file), _) => Key::from_bytes(&load(file)?),
-            (None, owner) => Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?),
+            (None, owner) => {
+                Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?)
+            }
         };
         Ok(key.map_err(Error::from)?)
     }
@@ -295,7 +316,10 @@ struct Clock {
 
 impl Clock {
     fn new() -> Clock {
-        Clock { stages: Vec::new(), running: None }
+        Clock {
+            stages: Vec::new(),
+            running: None,
+        }
     }
 
     fn start(&mut self, stage: &'static str) {
@@ -307,7 +331,8 @@ impl Clock {
 
     fn stop(&mut self) {
         if let Some((stage, since)) = self.running.take() {
-            self.stages.push((stage, since.elapsed().as_secs_f64() * 1e3));
+            self.stages
+                .push((stage, since.elapsed().as_secs_f64() * 1e3));
         }
     }
 

@@ -13,7 +13,9 @@ use crate::progress::{Cancelled, Progress};
 use glam::DVec3;
 
 /// A carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Carrier {
     /// Offsets of vertices from their one-rings, addressed by connectivity: see [`ring`].
@@ -37,7 +39,12 @@ impl Carrier {
     }
 
     /// The displacement of all V vertices that gives the host the mark.
-    pub fn embed(self, host: &Host, mark: &Mark, progress: &mut dyn Progress) -> Result<Vec<DVec3>, CarrierError> {
+    pub fn embed(
+        self,
+        host: &Host,
+        mark: &Mark,
+        progress: &mut dyn Progress,
+    ) -> Result<Vec<DVec3>, CarrierError> {
         match self {
             Carrier::Ring => ring::embed(host, mark, progress),
         }

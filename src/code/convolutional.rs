@@ -28,7 +28,11 @@ impl Codeword {
         let mut registers = [0; STEPS];
         let mut state = 0;
         for (step, register) in registers.iter_mut().enumerate() {
-            let bit = if step < MESSAGE_BITS as usize { message >> (MESSAGE_BITS as usize - 1 - step) & 1 } else { 0 };
+            let bit = if step < MESSAGE_BITS as usize {
+                message >> (MESSAGE_BITS as usize - 1 - step) & 1
+            } else {
+                0
+            };
             *register = (bit as u16) << MEMORY | state;
             state = *register >> 1;
         }
@@ -40,7 +44,11 @@ impl Codeword {
         match symbol {
             Symbol::Pilot => 1.0,
             Symbol::Parity { step, taps } => {
-                if (self.0[usize::from(step)] & taps).count_ones() & 1 == 0 { 1.0 } else { -1.0 }
+                if (self.0[usize::from(step)] & taps).count_ones() & 1 == 0 {
+                    1.0
+                } else {
+                    -1.0
+                }
             }
         }
     }
@@ -75,7 +83,11 @@ impl Trellis {
     }
 
     fn best_paths(&self, list: usize) -> Vec<u64> {
-        let origin = Path { metric: 0.0, state: 0, rank: 0 };
+        let origin = Path {
+            metric: 0.0,
+            state: 0,
+            rank: 0,
+        };
         let mut reached: Vec<Vec<Path>> = vec![Vec::new(); STATES];
         reached[0].push(origin);
         let mut history = Vec::with_capacity(STEPS);
@@ -88,11 +100,14 @@ impl Trellis {
                 let low = (state << 1) & (STATES - 1);
                 let [a, b] = [low, low | 1].map(|from| {
                     let branch = metrics[input << MEMORY | from];
-                    reached[from].iter().enumerate().map(move |(rank, path)| Path {
-                        metric: path.metric + branch,
-                        state: from as u8,
-                        rank: rank as u16,
-                    })
+                    reached[from]
+                        .iter()
+                        .enumerate()
+                        .map(move |(rank, path)| Path {
+                            metric: path.metric + branch,
+                            state: from as u8,
+                            rank: rank as u16,
+                        })
                 });
                 merge(a, b, list)
             });
@@ -100,7 +115,9 @@ impl Trellis {
             history.push(std::mem::replace(&mut reached, next));
         }
         history.push(reached);
-        (0..history[STEPS][0].len()).map(|rank| trace(&history, rank)).collect()
+        (0..history[STEPS][0].len())
+            .map(|rank| trace(&history, rank))
+            .collect()
     }
 }
 

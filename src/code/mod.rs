@@ -27,8 +27,14 @@ impl Symbol {
         if choice == 0 {
             return Symbol::Pilot;
         }
-        let (step, rest) = (rest % convolutional::STEPS as u64, rest / convolutional::STEPS as u64);
-        Symbol::Parity { step: step as u8, taps: (rest % 128) as u16 * 2 + 257 }
+        let (step, rest) = (
+            rest % convolutional::STEPS as u64,
+            rest / convolutional::STEPS as u64,
+        );
+        Symbol::Parity {
+            step: step as u8,
+            taps: (rest % 128) as u16 * 2 + 257,
+        }
     }
 }
 

@@ -23,16 +23,22 @@ pub struct Statistic {
 impl Statistic {
     /// From pairs of (signed value, weight), `|value| <= weight`.
     pub fn new(terms: impl IntoIterator<Item = (f64, f64)>) -> Statistic {
-        terms.into_iter().fold(Statistic::default(), |s, (value, weight)| Statistic {
-            sum: s.sum + value,
-            weight: s.weight + weight,
-            energy: s.energy + weight * weight,
-        })
+        terms
+            .into_iter()
+            .fold(Statistic::default(), |s, (value, weight)| Statistic {
+                sum: s.sum + value,
+                weight: s.weight + weight,
+                energy: s.energy + weight * weight,
+            })
     }
 
     /// The weighted agreement: 1 is perfect, 0 is chance, negative is worse than chance.
     pub fn agreement(&self) -> f64 {
-        if self.weight > 0.0 { self.sum / self.weight } else { 0.0 }
+        if self.weight > 0.0 {
+            self.sum / self.weight
+        } else {
+            0.0
+        }
     }
 
     /// `ln P <= -T^2 / sum w^2`, for one test declared in advance; 0 for a sum that is not positive.

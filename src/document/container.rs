@@ -30,6 +30,12 @@ pub(super) struct Parts {
 /// Takes a model file apart. A file that starts with the GLB magic number is GLB, any other is JSON.
 pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
     if !model.starts_with(MAGIC) {
+        let text = model.strip_prefix("\u{feff}".as_bytes()).unwrap_or(model);
+        if !text.trim_ascii_start().starts_with(b"{") {
+            return Err(DocumentError::BadContainer {
+                detail: "it starts neither like a .glb nor like a .gltf file".into(),
+            });
+        }
         return Ok(Parts {
             container: Container::Gltf,
             text: utf8(model)?,

@@ -35,7 +35,6 @@ const ACCEPTED: &[&str] = &[
     "KHR_xmp_json_ld",
     // Image formats and texture coordinates.
     "EXT_texture_avif",
-    "EXT_texture_video",
     "EXT_texture_webp",
     "KHR_texture_basisu",
     "KHR_texture_transform",

@@ -8,7 +8,7 @@
 //! writing edits spans of the original text and patches the original bytes.
 //!
 //! The module knows bytes and numbers, not geometry. The schema is read through types of its own
-//! which borrow from the text ([`schema`] says why), with the `gltf` crate's enumerations.
+//! which borrow from the text (`schema.rs` says why), with the `gltf` crate's enumerations.
 //! `KHR_mesh_quantization`, which that crate refuses, is read here; compressed geometry and required
 //! extensions that may concern positions are refused.
 //!
@@ -262,7 +262,7 @@ impl Document {
     pub fn fixed_elements(&self, accessor: usize) -> Result<Vec<bool>, DocumentError> {
         let accessor = self.position_accessor(accessor)?;
         let slots = accessor.slots(&self.storages)?;
-        Ok(self.sharing.fixed(accessor, &slots, &self.accessors))
+        Ok(self.sharing.fixed(accessor, &slots))
     }
 
     /// Whether the accessor holds positions of which at least one can be changed.
@@ -319,7 +319,7 @@ impl Document {
             });
         }
         let slots = accessor.slots(&self.storages)?;
-        let fixed = self.sharing.fixed(accessor, &slots, &self.accessors);
+        let fixed = self.sharing.fixed(accessor, &slots);
         let mut patches = Vec::new();
         for (element, (position, (slot, fixed))) in positions
             .iter()

@@ -17,7 +17,7 @@ pub struct Slot {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Region {
     pub storage: usize,
-    start: usize,
+    pub start: usize,
     stride: usize,
     pub size: usize,
     pub count: usize,
@@ -179,7 +179,8 @@ impl Region {
         self.storage != other.storage || self.end() <= other.start || other.end() <= self.start
     }
 
-    fn end(&self) -> usize {
+    /// The offset after the last element.
+    pub fn end(&self) -> usize {
         let last = self.count.checked_sub(1).and_then(|last| self.slot(last));
         last.map_or(self.start, |last| last.offset.saturating_add(self.size))
     }

@@ -6,7 +6,7 @@
 //! Positions of two accessors may be the same bytes; then they are one position, and moving it
 //! through one accessor moves it in the other. Positions that overlap in part are fixed.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, Format};
 use super::region::{Region, Slot, View};
 use super::schema::Root;
 
@@ -14,8 +14,16 @@ use super::schema::Root;
 pub(super) struct Sharing {
     /// Whether each accessor holds the positions of some primitive.
     is_position: Vec<bool>,
-    /// The elements that must not change, sorted.
-    occupied: Vec<Region>,
+    /// By storage and first byte.
+    uses: Vec<Use>,
+}
+
+struct Use {
+    region: Region,
+    /// The number format of positions, `None` for every other use.
+    format: Option<Format>,
+    /// The largest end of this region and those before it in the same storage.
+    reach: usize,
 }
 
 impl Sharing {
@@ -52,21 +60,30 @@ impl Sharing {
             mark(&mut has_other_use, *accessor);
         }
 
-        let mut occupied = Vec::new();
+        let mut uses: Vec<(Region, Option<Format>)> = Vec::new();
         for (accessor, (is_position, has_other_use)) in
             accessors.iter().zip(is_position.iter().zip(has_other_use))
         {
-            if has_other_use || !is_position {
-                occupied.extend(accessor.regions().cloned());
+            if *is_position {
+                uses.extend(
+                    accessor
+                        .regions()
+                        .map(|region| (region.clone(), Some(accessor.format))),
+                );
             }
-            occupied.extend(accessor.index_region().cloned());
+            if has_other_use || !is_position {
+                uses.extend(accessor.regions().map(|region| (region.clone(), None)));
+            }
+            uses.extend(accessor.index_region().map(|region| (region.clone(), None)));
         }
-        occupied.extend(whole_views(root, views));
-        occupied.sort_unstable();
-        occupied.dedup();
+        uses.extend(
+            whole_views(root, views)
+                .into_iter()
+                .map(|region| (region, None)),
+        );
         Self {
             is_position,
-            occupied,
+            uses: sorted(uses),
         }
     }
 
@@ -76,38 +93,53 @@ impl Sharing {
     }
 
     /// Whether each element of a position accessor has to stay as it is.
-    pub fn fixed(
-        &self,
-        accessor: &Accessor,
-        slots: &[Option<Slot>],
-        accessors: &[Accessor],
-    ) -> Vec<bool> {
-        let near = |region: &&Region| accessor.regions().any(|own| !own.apart(region));
-        let mut occupied: Vec<&Region> = self.occupied.iter().filter(near).collect();
-        let mut peers: Vec<&Region> = Vec::new();
-        for other in accessors
-            .iter()
-            .filter(|other| self.is_position(other.index))
-        {
-            let same_format = other.format == accessor.format;
-            let list = if same_format {
-                &mut peers
-            } else {
-                &mut occupied
-            };
-            list.extend(other.regions().filter(near));
-        }
-        peers.sort_unstable();
-        peers.dedup();
-        let size = accessor.regions().next().map_or(0, |region| region.size);
-        let is_fixed = |slot: Slot| {
-            occupied.iter().any(|region| region.overlaps(slot, size))
-                || peers
-                    .iter()
-                    .any(|peer| peer.overlaps(slot, size) && !peer.has(slot))
+    pub fn fixed(&self, accessor: &Accessor, slots: &[Option<Slot>]) -> Vec<bool> {
+        let near: Vec<&Use> = accessor
+            .regions()
+            .flat_map(|region| self.near(region))
+            .collect();
+        let size = accessor.format.position_size();
+        let clashes = |usage: &Use, slot: Slot| {
+            let is_same = usage.format == Some(accessor.format) && usage.region.has(slot);
+            !is_same && usage.region.overlaps(slot, size)
         };
+        let is_fixed = |slot: Slot| near.iter().any(|usage| clashes(usage, slot));
         slots.iter().map(|slot| slot.is_none_or(is_fixed)).collect()
     }
+
+    /// The uses of bytes between the ends of a region.
+    fn near(&self, region: &Region) -> impl Iterator<Item = &Use> {
+        let storage = region.storage;
+        let first = self.uses.partition_point(|usage| {
+            (usage.region.storage, usage.reach) <= (storage, region.start)
+        });
+        let after = self.uses.partition_point(|usage| {
+            (usage.region.storage, usage.region.start) < (storage, region.end())
+        });
+        let uses = self.uses.get(first..after).unwrap_or_default();
+        uses.iter().filter(|usage| !usage.region.apart(region))
+    }
+}
+
+/// The uses in order, each once.
+fn sorted(mut uses: Vec<(Region, Option<Format>)>) -> Vec<Use> {
+    let key = |format: Option<Format>| {
+        format.map(|format| (format.component.as_gl_enum(), format.normalized))
+    };
+    uses.sort_unstable_by(|(a, a_format), (b, b_format)| {
+        a.cmp(b).then_with(|| key(*a_format).cmp(&key(*b_format)))
+    });
+    uses.dedup();
+    let mut reach = (0, 0);
+    let with_reach = uses.into_iter().map(|(region, format)| {
+        reach = reach.max((region.storage, region.end()));
+        Use {
+            region,
+            format,
+            reach: reach.1,
+        }
+    });
+    with_reach.collect()
 }
 
 /// The buffer views of images, and those that nothing known refers to, as one element each.

@@ -18,7 +18,9 @@ pub enum EvidenceError {
     #[error("this is not an evidence file")]
     NotEvidence,
     /// Evidence of a later version.
-    #[error("this evidence was measured by a later version (format {0}); this one reads format {VERSION}")]
+    #[error(
+        "this evidence was measured by a later version (format {0}); this one reads format {VERSION}"
+    )]
     Version(u16),
     /// Cut short or damaged.
     #[error("the evidence is damaged")]
@@ -46,19 +48,31 @@ pub struct Evidence {
 impl Evidence {
     /// Measures a mesh.
     pub fn measure(mesh: &Mesh) -> Evidence {
-        Evidence { ring: ring::Measurement::new(mesh) }
+        Evidence {
+            ring: ring::Measurement::new(mesh),
+        }
     }
 
     /// The evidence as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let content = self.ring.to_bytes();
-        let length = u32::try_from(content.len()).expect("20 bytes a ring, and indices of vertices have 32 bits");
-        [MAGIC.as_slice(), &VERSION.to_le_bytes(), RING, &length.to_le_bytes(), &content].concat()
+        let length = u32::try_from(content.len())
+            .expect("20 bytes a ring, and indices of vertices have 32 bits");
+        [
+            MAGIC.as_slice(),
+            &VERSION.to_le_bytes(),
+            RING,
+            &length.to_le_bytes(),
+            &content,
+        ]
+        .concat()
     }
 
     /// Evidence from its bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Evidence, EvidenceError> {
-        let bytes = bytes.strip_prefix(MAGIC).ok_or(EvidenceError::NotEvidence)?;
+        let bytes = bytes
+            .strip_prefix(MAGIC)
+            .ok_or(EvidenceError::NotEvidence)?;
         let (version, bytes) = bytes.split_first_chunk().ok_or(EvidenceError::Damaged)?;
         match u16::from_le_bytes(*version) {
             VERSION => {}

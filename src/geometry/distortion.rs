@@ -4,8 +4,12 @@ use glam::DVec3;
 
 /// The diagonal of the axis-parallel bounding box, in the units of the positions; 0 without positions.
 pub fn diagonal(positions: &[DVec3]) -> f64 {
-    let Some(&first) = positions.first() else { return 0.0 };
-    let (low, high) = positions.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
+    let Some(&first) = positions.first() else {
+        return 0.0;
+    };
+    let (low, high) = positions
+        .iter()
+        .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
     (high - low).length()
 }
 
@@ -23,7 +27,12 @@ pub struct Distortion {
 impl Distortion {
     /// Compares V positions before and after, vertex by vertex.
     pub fn between(before: &[DVec3], after: &[DVec3]) -> Distortion {
-        let squares = || before.iter().zip(after).map(|(a, b)| a.distance_squared(*b));
+        let squares = || {
+            before
+                .iter()
+                .zip(after)
+                .map(|(a, b)| a.distance_squared(*b))
+        };
         let diagonal = diagonal(before);
         if diagonal == 0.0 {
             return Distortion::default();

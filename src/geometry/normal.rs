@@ -13,5 +13,8 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<DVec3> {
             normals[vertex as usize] += twice_area;
         }
     }
-    normals.iter().map(|normal| normal.normalize_or_zero()).collect()
+    normals
+        .iter()
+        .map(|normal| normal.normalize_or_zero())
+        .collect()
 }

@@ -64,7 +64,10 @@ impl Key {
 
     /// A key from a key file's bytes: exactly 32, taken as they are.
     pub fn from_bytes(bytes: &[u8]) -> Result<Key, KeyError> {
-        bytes.try_into().map(Key).map_err(|_| KeyError::Length(bytes.len()))
+        bytes
+            .try_into()
+            .map(Key)
+            .map_err(|_| KeyError::Length(bytes.len()))
     }
 
     /// A key from what a person can remember: Argon2id (RFC 9106) over the passphrase, salted with the owner's name.
@@ -80,9 +83,14 @@ impl Key {
         if passphrase.is_empty() {
             return Err(KeyError::EmptyPassphrase);
         }
-        let salt = Sha256::new().chain_update(DOMAIN).chain_update(b"/owner/").chain_update(owner.trim()).finalize();
+        let salt = Sha256::new()
+            .chain_update(DOMAIN)
+            .chain_update(b"/owner/")
+            .chain_update(owner.trim())
+            .finalize();
         let derivation = |error: argon2::Error| KeyError::Derivation(error.to_string());
-        let params = Params::new(MEMORY_KIB, PASSES, LANES, Some(Key::BYTES)).map_err(derivation)?;
+        let params =
+            Params::new(MEMORY_KIB, PASSES, LANES, Some(Key::BYTES)).map_err(derivation)?;
         let mut key = Key([0; Key::BYTES]);
         Argon2::new(Algorithm::Argon2id, Version::V0x13, params)
             .hash_password_into(passphrase.as_bytes(), &salt, &mut key.0)

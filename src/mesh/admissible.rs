@@ -23,7 +23,11 @@ impl Admissible {
     pub fn project(&self, displacement: &mut [DVec3]) {
         for orbit in &self.orbits {
             let normal: DMat3 = orbit.members.iter().map(|(_, m)| m.transpose() * *m).sum();
-            let pulled: DVec3 = orbit.members.iter().map(|&(v, m)| m.transpose() * displacement[v as usize]).sum();
+            let pulled: DVec3 = orbit
+                .members
+                .iter()
+                .map(|&(v, m)| m.transpose() * displacement[v as usize])
+                .sum();
             let shared = normal.inverse() * pulled;
             for &(vertex, map) in &orbit.members {
                 displacement[vertex as usize] = map * shared;

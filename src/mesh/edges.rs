@@ -25,7 +25,9 @@ impl Edges {
             .triangles
             .iter()
             .enumerate()
-            .flat_map(|(face, &[a, b, c])| [(a, b), (b, c), (c, a)].map(|(from, to)| (face, from, to)))
+            .flat_map(|(face, &[a, b, c])| {
+                [(a, b), (b, c), (c, a)].map(|(from, to)| (face, from, to))
+            })
             .map(|(face, from, to)| Side {
                 low: from.min(to),
                 high: from.max(to),
@@ -34,11 +36,15 @@ impl Edges {
             })
             .collect();
         sides.sort_unstable();
-        Edges { sides, num_faces: mesh.triangles.len() }
+        Edges {
+            sides,
+            num_faces: mesh.triangles.len(),
+        }
     }
 
     fn edges(&self) -> impl Iterator<Item = &[Side]> {
-        self.sides.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
+        self.sides
+            .chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
     }
 
     /// Edges with one face only.
@@ -57,7 +63,10 @@ impl Edges {
         let mut components = self.num_faces;
         for sides in self.edges() {
             for pair in sides.windows(2) {
-                let (a, b) = (find(&mut parents, pair[0].face), find(&mut parents, pair[1].face));
+                let (a, b) = (
+                    find(&mut parents, pair[0].face),
+                    find(&mut parents, pair[1].face),
+                );
                 if a != b {
                     parents[b as usize] = a;
                     components -= 1;
@@ -137,8 +146,16 @@ impl Edges {
             }
         }
         // Every face at a vertex has two of the vertex's sides, so with two faces an edge there are as many faces as edges.
-        let closed = closed.iter().zip(&valences).map(|(&closed, &valence)| closed && valence >= 3).collect();
-        Rings { starts, neighbours, closed }
+        let closed = closed
+            .iter()
+            .zip(&valences)
+            .map(|(&closed, &valence)| closed && valence >= 3)
+            .collect();
+        Rings {
+            starts,
+            neighbours,
+            closed,
+        }
     }
 }
 

@@ -22,7 +22,10 @@ pub struct Mesh {
 impl Mesh {
     /// The same triangles with other positions.
     pub fn with_positions(&self, positions: Vec<DVec3>) -> Mesh {
-        Mesh { positions, triangles: self.triangles.clone() }
+        Mesh {
+            positions,
+            triangles: self.triangles.clone(),
+        }
     }
 
     /// The corners of a triangle.

@@ -34,15 +34,26 @@ pub fn admissible(
                     orbits.push(Orbit { members });
                 }
             }
-            (members, _) => members.iter().for_each(|&(vertex, _)| fixed[vertex as usize] = true),
+            (members, _) => members
+                .iter()
+                .for_each(|&(vertex, _)| fixed[vertex as usize] = true),
         }
     }
-    let fixed = fixed.iter().zip(0..).filter(|(fixed, _)| **fixed).map(|(_, vertex)| vertex).collect();
+    let fixed = fixed
+        .iter()
+        .zip(0..)
+        .filter(|(fixed, _)| **fixed)
+        .map(|(_, vertex)| vertex)
+        .collect();
     Ok(Admissible { orbits, fixed })
 }
 
 /// For each vertex, whether one of its elements cannot be written.
-fn unwritable(document: &Document, placements: &[Placement], num_vertices: usize) -> Result<Vec<bool>, DocumentError> {
+fn unwritable(
+    document: &Document,
+    placements: &[Placement],
+    num_vertices: usize,
+) -> Result<Vec<bool>, DocumentError> {
     let mut fixed = vec![false; num_vertices];
     for placement in placements {
         let elements = document.fixed_elements(placement.accessor)?;
@@ -57,15 +68,26 @@ fn unwritable(document: &Document, placements: &[Placement], num_vertices: usize
 }
 
 /// For each vertex that shares an element's bytes with another, the links from it.
-fn links(document: &Document, placements: &[Placement]) -> Result<BTreeMap<u32, Vec<Link>>, DocumentError> {
+fn links(
+    document: &Document,
+    placements: &[Placement],
+) -> Result<BTreeMap<u32, Vec<Link>>, DocumentError> {
     let mut links: BTreeMap<u32, Vec<Link>> = BTreeMap::new();
     for uses in uses(document, placements)?.chunk_by(|a, b| a.slot == b.slot) {
         let (a, first) = (uses[0].vertex, &placements[uses[0].placement]);
         for other in &uses[1..] {
             let (b, other) = (other.vertex, &placements[other.placement]);
-            let (Some(to_first), Some(to_other)) = (first.to_local, other.to_local) else { continue };
-            links.entry(a).or_default().push((b, other.to_world.matrix3 * to_first));
-            links.entry(b).or_default().push((a, first.to_world.matrix3 * to_other));
+            let (Some(to_first), Some(to_other)) = (first.to_local, other.to_local) else {
+                continue;
+            };
+            links
+                .entry(a)
+                .or_default()
+                .push((b, other.to_world.matrix3 * to_first));
+            links
+                .entry(b)
+                .or_default()
+                .push((a, first.to_world.matrix3 * to_other));
         }
     }
     Ok(links)
@@ -97,6 +119,10 @@ fn orbit(root: u32, links: &BTreeMap<u32, Vec<Link>>, visited: &mut [bool]) -> (
 
 fn agree(a: &DMat3, b: &DMat3) -> bool {
     let (a, b) = (a.to_cols_array(), b.to_cols_array());
-    let scale = a.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
-    a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= TOLERANCE * scale)
+    let scale = a
+        .iter()
+        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    a.iter()
+        .zip(&b)
+        .all(|(a, b)| (a - b).abs() <= TOLERANCE * scale)
 }

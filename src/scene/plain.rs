@@ -7,14 +7,33 @@ use glam::DVec3;
 /// A binary glTF file with one node, one mesh with normals, and one material. Positions are rounded to f32.
 pub fn to_glb(mesh: &Mesh) -> Vec<u8> {
     let floats = |vectors: &[DVec3]| -> Vec<u8> {
-        vectors.iter().flat_map(|v| v.as_vec3().to_array()).flat_map(f32::to_le_bytes).collect()
+        vectors
+            .iter()
+            .flat_map(|v| v.as_vec3().to_array())
+            .flat_map(f32::to_le_bytes)
+            .collect()
     };
     let positions = floats(&mesh.positions);
     let normals = floats(&vertex_normals(mesh));
-    let indices: Vec<u8> = mesh.triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
+    let indices: Vec<u8> = mesh
+        .triangles
+        .iter()
+        .flatten()
+        .flat_map(|index| index.to_le_bytes())
+        .collect();
     let first = mesh.positions.first().copied().unwrap_or_default();
-    let low = mesh.positions.iter().fold(first, |low, p| low.min(*p)).as_vec3().to_array();
-    let high = mesh.positions.iter().fold(first, |high, p| high.max(*p)).as_vec3().to_array();
+    let low = mesh
+        .positions
+        .iter()
+        .fold(first, |low, p| low.min(*p))
+        .as_vec3()
+        .to_array();
+    let high = mesh
+        .positions
+        .iter()
+        .fold(first, |high, p| high.max(*p))
+        .as_vec3()
+        .to_array();
     let (vector_bytes, index_bytes) = (positions.len(), indices.len());
     let (num_vertices, num_indices) = (mesh.positions.len(), 3 * mesh.triangles.len());
     let mut json = format!(

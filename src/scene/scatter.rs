@@ -8,13 +8,20 @@ use glam::DVec3;
 impl Scene {
     /// Displaces the document's elements as V admissible displacements of the vertices say. Each coordinate is rounded to
     /// what its accessor can hold.
-    pub fn scatter(&self, document: &mut Document, displacement: &[DVec3]) -> Result<(), SceneError> {
+    pub fn scatter(
+        &self,
+        document: &mut Document,
+        displacement: &[DVec3],
+    ) -> Result<(), SceneError> {
         let mut moves: Vec<Vec<(usize, DVec3)>> = vec![Vec::new(); self.placements.len()];
         for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
             // The displacement is admissible, so all uses of an element agree about it: the first moves it.
             let first = uses[0];
             if let Some(to_local) = self.placements[first.placement].to_local {
-                moves[first.placement].push((first.element, to_local * displacement[first.vertex as usize]));
+                moves[first.placement].push((
+                    first.element,
+                    to_local * displacement[first.vertex as usize],
+                ));
             }
         }
         for (placement, moves) in self.placements.iter().zip(moves) {
@@ -34,7 +41,9 @@ impl Scene {
             let locals = document.positions(placement.accessor)?;
             for (vertex, local) in placement.vertices.iter().zip(locals) {
                 if let Some(slot) = vertex.and_then(|vertex| positions.get_mut(vertex as usize)) {
-                    *slot = placement.to_world.transform_point3(DVec3::from_array(local));
+                    *slot = placement
+                        .to_world
+                        .transform_point3(DVec3::from_array(local));
                 }
             }
         }

@@ -21,9 +21,18 @@ pub fn uses(document: &Document, placements: &[Placement]) -> Result<Vec<Use>, D
     let mut uses = Vec::new();
     for (placement, shown) in placements.iter().enumerate() {
         let slots = document.slots(shown.accessor)?.into_iter().enumerate();
-        uses.extend(slots.zip(&shown.vertices).filter_map(|((element, slot), vertex)| {
-            Some(Use { slot: slot?, placement, element, vertex: (*vertex)? })
-        }));
+        uses.extend(
+            slots
+                .zip(&shown.vertices)
+                .filter_map(|((element, slot), vertex)| {
+                    Some(Use {
+                        slot: slot?,
+                        placement,
+                        element,
+                        vertex: (*vertex)?,
+                    })
+                }),
+        );
     }
     uses.sort_unstable();
     Ok(uses)

@@ -17,7 +17,9 @@ const TYPES: &str = include_str!("types.d.ts");
 /// 32 bytes from an owner's name and passphrase.
 #[wasm_bindgen(js_name = deriveKey, skip_typescript)]
 pub fn derive_key(owner: &str, passphrase: &str) -> Result<Vec<u8>, JsValue> {
-    let key = Key::from_passphrase(owner, passphrase).map_err(Error::from).map_err(thrown)?;
+    let key = Key::from_passphrase(owner, passphrase)
+        .map_err(Error::from)
+        .map_err(thrown)?;
     Ok(key.to_bytes().to_vec())
 }
 
@@ -32,16 +34,28 @@ pub fn embed(
     on_progress: Option<Function>,
     signal: Option<AbortSignal>,
 ) -> Result<Object, JsValue> {
-    let mut listener = Listener { on_progress, signal };
+    let mut listener = Listener {
+        on_progress,
+        signal,
+    };
     let key = key_from(key)?;
-    let (payload, options, files) = (payload_from(&payload)?, options_from(&options)?, files_from(&files)?);
-    let embedding = watermark::embed(model, &files, payload, &key, &options, &mut listener).map_err(thrown)?;
+    let (payload, options, files) = (
+        payload_from(&payload)?,
+        options_from(&options)?,
+        files_from(&files)?,
+    );
+    let embedding =
+        watermark::embed(model, &files, payload, &key, &options, &mut listener).map_err(thrown)?;
     let marked_files = Object::new();
     for (name, bytes) in &embedding.files {
         set(&marked_files, name, &Uint8Array::from(bytes.as_slice()))?;
     }
     let result = Object::new();
-    set(&result, "model", &Uint8Array::from(embedding.model.as_slice()))?;
+    set(
+        &result,
+        "model",
+        &Uint8Array::from(embedding.model.as_slice()),
+    )?;
     set(&result, "files", &marked_files)?;
     set(&result, "report", &encoded(&embedding.report)?)?;
     Ok(result)
@@ -55,21 +69,32 @@ pub fn measure(
     on_progress: Option<Function>,
     signal: Option<AbortSignal>,
 ) -> Result<Vec<u8>, JsValue> {
-    let mut listener = Listener { on_progress, signal };
-    let evidence = watermark::measure(model, &files_from(&files)?, &mut listener).map_err(thrown)?;
+    let mut listener = Listener {
+        on_progress,
+        signal,
+    };
+    let evidence =
+        watermark::measure(model, &files_from(&files)?, &mut listener).map_err(thrown)?;
     Ok(evidence.to_bytes())
 }
 
 /// Reads a payload.
 #[wasm_bindgen(skip_typescript)]
 pub fn extract(evidence: &[u8], key: &[u8]) -> Result<JsValue, JsValue> {
-    encoded(&watermark::extract(&evidence_from(evidence)?, &key_from(key)?))
+    encoded(&watermark::extract(
+        &evidence_from(evidence)?,
+        &key_from(key)?,
+    ))
 }
 
 /// Tests an expected payload.
 #[wasm_bindgen(skip_typescript)]
 pub fn verify(evidence: &[u8], key: &[u8], expected: JsValue) -> Result<JsValue, JsValue> {
-    encoded(&watermark::verify(&evidence_from(evidence)?, &key_from(key)?, payload_from(&expected)?))
+    encoded(&watermark::verify(
+        &evidence_from(evidence)?,
+        &key_from(key)?,
+        payload_from(&expected)?,
+    ))
 }
 
 /// Describes a model.
@@ -98,10 +123,18 @@ struct Listener {
 
 impl Progress for Listener {
     fn report(&mut self, stage: Stage, fraction: f64) -> ControlFlow<()> {
-        let heard = self.on_progress.as_ref().map(|f| f.call2(&JsValue::NULL, &stage.name().into(), &fraction.into()));
+        let heard = self
+            .on_progress
+            .as_ref()
+            .map(|f| f.call2(&JsValue::NULL, &stage.name().into(), &fraction.into()));
         // A callback that throws has asked for the work to stop.
-        let stopped = matches!(heard, Some(Err(_))) || self.signal.as_ref().is_some_and(AbortSignal::aborted);
-        if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let stopped =
+            matches!(heard, Some(Err(_))) || self.signal.as_ref().is_some_and(AbortSignal::aborted);
+        if stopped {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 
@@ -110,14 +143,20 @@ fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
 }
 
 fn evidence_from(bytes: &[u8]) -> Result<Evidence, JsValue> {
-    Evidence::from_bytes(bytes).map_err(Error::from).map_err(thrown)
+    Evidence::from_bytes(bytes)
+        .map_err(Error::from)
+        .map_err(thrown)
 }
 
 /// A string is a tag, a number a number.
 fn payload_from(value: &JsValue) -> Result<Payload, JsValue> {
     let payload = match (value.as_string(), value.as_f64()) {
         (Some(tag), _) => Payload::from_tag(&tag),
-        (None, Some(number)) if number >= 0.0 && number.fract() == 0.0 && number < (1u64 << Payload::BITS) as f64 => {
+        (None, Some(number))
+            if number >= 0.0
+                && number.fract() == 0.0
+                && number < (1u64 << Payload::BITS) as f64 =>
+        {
             Payload::from_number(number as u64)
         }
         _ => Payload::from_number(u64::MAX),
@@ -141,7 +180,9 @@ fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
             let known = name.as_string().and_then(|name| Carrier::from_name(&name));
             known.ok_or_else(|| argument(&format!("there is no carrier {name:?}")))
         };
-        let names = carriers.dyn_into::<Array>().map_err(|_| argument("carriers is an array of names"))?;
+        let names = carriers
+            .dyn_into::<Array>()
+            .map_err(|_| argument("carriers is an array of names"))?;
         options.carriers = names.iter().map(name).collect::<Result<_, _>>()?;
     }
     Ok(options)
@@ -152,10 +193,15 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     if value.is_undefined() || value.is_null() {
         return Ok(Files::new());
     }
-    let files = value.dyn_ref::<Object>().ok_or_else(|| argument("files is an object of byte arrays"))?;
+    let files = value
+        .dyn_ref::<Object>()
+        .ok_or_else(|| argument("files is an object of byte arrays"))?;
     let entry = |entry: JsValue| {
         let entry = Array::from(&entry);
-        let bytes = entry.get(1).dyn_into::<Uint8Array>().map_err(|_| argument("files are byte arrays"))?;
+        let bytes = entry
+            .get(1)
+            .dyn_into::<Uint8Array>()
+            .map_err(|_| argument("files are byte arrays"))?;
         Ok((entry.get(0).as_string().unwrap_or_default(), bytes.to_vec()))
     };
     Object::entries(files).iter().map(entry).collect()
@@ -173,7 +219,9 @@ fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
 /// A report as a plain object: `null` for what is not there, numbers for whole numbers below 2^53.
 fn encoded(report: &impl Serialize) -> Result<JsValue, JsValue> {
     let serializer = serde_wasm_bindgen::Serializer::json_compatible();
-    report.serialize(&serializer).map_err(|error| argument(&error.to_string()))
+    report
+        .serialize(&serializer)
+        .map_err(|error| argument(&error.to_string()))
 }
 
 /// An error as JavaScript sees it.
@@ -193,5 +241,10 @@ fn failure(code: &str, message: &str, path: Option<&str>) -> JsValue {
         message: &'a str,
         path: Option<&'a str>,
     }
-    encoded(&Failure { code, message, path }).unwrap_or(JsValue::UNDEFINED)
+    encoded(&Failure {
+        code,
+        message,
+        path,
+    })
+    .unwrap_or(JsValue::UNDEFINED)
 }

@@ -44,16 +44,34 @@ pub fn embed(
     step(progress, Stage::Read, 1.0)?;
 
     let codeword = Codeword::new(Checked::new(key).message(payload));
-    let mark = Mark { key, codeword: &codeword };
+    let mark = Mark {
+        key,
+        codeword: &codeword,
+    };
     let mut mesh = scene.mesh.clone();
-    for carrier in Carrier::ALL.into_iter().filter(|carrier| options.carriers.contains(carrier)) {
-        let host = Host { mesh: &mesh, admissible: &scene.admissible, rms_rel: options.strength.rms_rel() };
+    for carrier in Carrier::ALL
+        .into_iter()
+        .filter(|carrier| options.carriers.contains(carrier))
+    {
+        let host = Host {
+            mesh: &mesh,
+            admissible: &scene.admissible,
+            rms_rel: options.strength.rms_rel(),
+        };
         let displacement = carrier.embed(&host, &mark, progress)?;
-        mesh.positions.iter_mut().zip(displacement).for_each(|(position, d)| *position += d);
+        mesh.positions
+            .iter_mut()
+            .zip(displacement)
+            .for_each(|(position, d)| *position += d);
     }
 
     step(progress, Stage::Write, 0.0)?;
-    let displacement: Vec<DVec3> = mesh.positions.iter().zip(&scene.mesh.positions).map(|(a, b)| *a - *b).collect();
+    let displacement: Vec<DVec3> = mesh
+        .positions
+        .iter()
+        .zip(&scene.mesh.positions)
+        .map(|(a, b)| *a - *b)
+        .collect();
     scene.scatter(&mut document, &displacement)?;
     let distortion = Distortion::between(&scene.mesh.positions, &scene.positions_in(&document)?);
     let written = document.write()?;
@@ -66,8 +84,15 @@ pub fn embed(
     let read_back = extract(&evidence, key);
     step(progress, Stage::Test, 1.0)?;
     if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
-        let addresses = read_back.carriers.iter().map(|carrier| carrier.addresses).sum();
-        return Err(Error::Unreadable { ln_p: read_back.ln_p, addresses });
+        let addresses = read_back
+            .carriers
+            .iter()
+            .map(|carrier| carrier.addresses)
+            .sum();
+        return Err(Error::Unreadable {
+            ln_p: read_back.ln_p,
+            addresses,
+        });
     }
     let report = EmbedReport {
         tag: payload.tag(),
@@ -82,5 +107,9 @@ pub fn embed(
         host_sha256: sha256(model),
         marked_sha256: sha256(&written.model),
     };
-    Ok(Embedding { model: written.model, files: written.files, report })
+    Ok(Embedding {
+        model: written.model,
+        files: written.files,
+        report,
+    })
 }

@@ -31,7 +31,9 @@ pub enum Error {
     #[error(transparent)]
     Evidence(#[from] EvidenceError),
     /// A strength outside its range.
-    #[error("strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}")]
+    #[error(
+        "strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}"
+    )]
     Strength(String),
     /// No carrier was chosen.
     #[error("no carrier was chosen")]

@@ -17,7 +17,11 @@ use std::f64::consts::LN_2;
 const LIST: usize = 16;
 
 /// Measures a suspect: everything that needs no key.
-pub fn measure(model: &[u8], files: &Files, progress: &mut dyn Progress) -> Result<Evidence, Error> {
+pub fn measure(
+    model: &[u8],
+    files: &Files,
+    progress: &mut dyn Progress,
+) -> Result<Evidence, Error> {
     step(progress, Stage::Read, 0.0)?;
     let scene = Scene::gather(&Document::read(model, files)?)?;
     step(progress, Stage::Measure, 0.0)?;
@@ -41,7 +45,10 @@ pub fn verify(evidence: &Evidence, key: &Key, expected: Payload) -> Extraction {
 }
 
 fn read(evidence: &Evidence, key: &Key, expected: Option<Payload>) -> Extraction {
-    let reader = Reader { check: Checked::new(key), expected };
+    let reader = Reader {
+        check: Checked::new(key),
+        expected,
+    };
     conclude(vec![reader.read(Carrier::Ring, &evidence.ring.read(key))])
 }
 
@@ -73,15 +80,25 @@ struct Reader {
 impl Reader {
     fn read(&self, name: Carrier, hypotheses: &[Hypothesis]) -> Reading {
         let charge = self.charge(hypotheses.len());
-        let (candidate, other) = match (likeliest(hypotheses.iter().filter_map(|h| self.decode(h, charge))), self.expected) {
-            (Some(decoded), Some(expected)) if decoded.payload != expected => (None, Some(decoded.payload)),
+        let (candidate, other) = match (
+            likeliest(hypotheses.iter().filter_map(|h| self.decode(h, charge))),
+            self.expected,
+        ) {
+            (Some(decoded), Some(expected)) if decoded.payload != expected => {
+                (None, Some(decoded.payload))
+            }
             (Some(decoded), _) => (Some(decoded), None),
-            (None, Some(expected)) => (likeliest(hypotheses.iter().map(|h| self.fit(h, expected))), None),
+            (None, Some(expected)) => (
+                likeliest(hypotheses.iter().map(|h| self.fit(h, expected))),
+                None,
+            ),
             (None, None) => (None, None),
         };
         let best = |ln_p: &mut dyn Iterator<Item = f64>| union(ln_p.fold(0.0, f64::min), charge);
         let pilots = best(&mut hypotheses.iter().map(|h| pilots(&h.symbols).ln_p()));
-        let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| union(candidate.ln_p, charge));
+        let ln_p_payload = candidate
+            .as_ref()
+            .map_or(0.0, |candidate| union(candidate.ln_p, charge));
         let payload = candidate.as_ref().map(|candidate| candidate.payload);
         Reading {
             report: CarrierReading {
@@ -90,18 +107,34 @@ impl Reader {
                 tag: payload.and_then(Payload::tag),
                 number: payload.map(Payload::number),
                 agreement: candidate.map_or(0.0, |candidate| candidate.all.agreement()),
-                addresses: hypotheses.iter().map(|h| h.num_addresses).max().unwrap_or(0),
-                owned_addresses: hypotheses.iter().map(|h| h.symbols.len()).max().unwrap_or(0),
+                addresses: hypotheses
+                    .iter()
+                    .map(|h| h.num_addresses)
+                    .max()
+                    .unwrap_or(0),
+                owned_addresses: hypotheses
+                    .iter()
+                    .map(|h| h.symbols.len())
+                    .max()
+                    .unwrap_or(0),
             },
             ln_p_payload,
-            ln_p_at_best: best(&mut hypotheses.iter().map(|h| against(&h.symbols, |_| 1.0).ln_p_at_best() + self.ln_guesses())),
+            ln_p_at_best: best(
+                &mut hypotheses
+                    .iter()
+                    .map(|h| against(&h.symbols, |_| 1.0).ln_p_at_best() + self.ln_guesses()),
+            ),
             other,
         }
     }
 
     /// Logarithm of the number of payloads that a reading chooses from.
     fn ln_guesses(&self) -> f64 {
-        if self.expected.is_some() { 0.0 } else { f64::from(Payload::BITS) * LN_2 }
+        if self.expected.is_some() {
+            0.0
+        } else {
+            f64::from(Payload::BITS) * LN_2
+        }
     }
 
     /// Logarithm of the number of tests: in each hypothesis the pilots alone and all symbols against a payload; where a
@@ -115,19 +148,33 @@ impl Reader {
     fn decode(&self, hypothesis: &Hypothesis, charge: f64) -> Option<Candidate> {
         let symbols = &hypothesis.symbols;
         let messages = decode(symbols, LIST).into_iter();
-        let (payload, codeword) = messages.filter_map(|m| Some((self.check.payload(m)?, Codeword::new(m)))).next()?;
+        let (payload, codeword) = messages
+            .filter_map(|m| Some((self.check.payload(m)?, Codeword::new(m))))
+            .next()?;
         let all = against(symbols, |symbol| codeword.sign(symbol));
         let guessed = all.ln_p() + f64::from(Payload::BITS) * LN_2;
-        (union(guessed, charge) <= LN_P_TRACE).then(|| Candidate { payload, all, ln_p: all.ln_p() + self.ln_guesses() })
+        (union(guessed, charge) <= LN_P_TRACE).then(|| Candidate {
+            payload,
+            all,
+            ln_p: all.ln_p() + self.ln_guesses(),
+        })
     }
 
     /// The expected payload, held against the symbols that other payloads of the same key do not share.
     fn fit(&self, hypothesis: &Hypothesis, payload: Payload) -> Candidate {
         let codeword = Codeword::new(self.check.message(payload));
         let sign = |symbol| codeword.sign(symbol);
-        let others = hypothesis.symbols.iter().filter(|soft| soft.symbol != Symbol::Pilot);
-        let ln_p = Statistic::new(others.map(|soft| (soft.value * sign(soft.symbol), soft.weight))).ln_p();
-        Candidate { payload, all: against(&hypothesis.symbols, sign), ln_p }
+        let others = hypothesis
+            .symbols
+            .iter()
+            .filter(|soft| soft.symbol != Symbol::Pilot);
+        let ln_p =
+            Statistic::new(others.map(|soft| (soft.value * sign(soft.symbol), soft.weight))).ln_p();
+        Candidate {
+            payload,
+            all: against(&hypothesis.symbols, sign),
+            ln_p,
+        }
     }
 }
 
@@ -141,31 +188,51 @@ fn pilots(symbols: &[SoftSymbol]) -> Statistic {
 }
 
 fn against(symbols: &[SoftSymbol], sign: impl Fn(Symbol) -> f64) -> Statistic {
-    Statistic::new(symbols.iter().map(|soft| (soft.value * sign(soft.symbol), soft.weight)))
+    Statistic::new(
+        symbols
+            .iter()
+            .map(|soft| (soft.value * sign(soft.symbol), soft.weight)),
+    )
 }
 
 /// One verdict from all carriers' readings; the choice between carriers is charged.
 fn conclude(readings: Vec<Reading>) -> Extraction {
     let charge = libm::log(readings.len() as f64);
-    let best = |ln_p: fn(&Reading) -> f64| union(readings.iter().map(ln_p).fold(0.0, f64::min), charge);
+    let best =
+        |ln_p: fn(&Reading) -> f64| union(readings.iter().map(ln_p).fold(0.0, f64::min), charge);
     let ln_p = best(|reading| reading.report.ln_p);
-    let loudest = readings.iter().min_by(|a, b| a.ln_p_payload.total_cmp(&b.ln_p_payload));
+    let loudest = readings
+        .iter()
+        .min_by(|a, b| a.ln_p_payload.total_cmp(&b.ln_p_payload));
     let report = loudest.map(|reading| &reading.report);
     let other = readings.iter().find_map(|reading| reading.other);
     let tag = report.and_then(|report| report.tag.clone());
     let number = report.and_then(|report| report.number);
     let named = tag.clone().or(number.map(|number| number.to_string()));
 
-    let addresses: usize = readings.iter().map(|reading| reading.report.addresses).sum();
-    let owned: usize = readings.iter().map(|reading| reading.report.owned_addresses).sum();
+    let addresses: usize = readings
+        .iter()
+        .map(|reading| reading.report.addresses)
+        .sum();
+    let owned: usize = readings
+        .iter()
+        .map(|reading| reading.report.owned_addresses)
+        .sum();
     let (verdict, reason) = if best(|reading| reading.ln_p_payload) <= LN_P_FOUND {
         (Verdict::Found, None)
     } else if let Some(other) = other {
         let other = other.tag().unwrap_or_else(|| other.number().to_string());
-        (Verdict::Partial, Some(format!("The model carries a mark of this key, but with another payload: {other}.")))
+        (
+            Verdict::Partial,
+            Some(format!(
+                "The model carries a mark of this key, but with another payload: {other}."
+            )),
+        )
     } else if ln_p <= LN_P_TRACE {
         let reason = match named {
-            Some(name) => format!("{name} fits, but not well enough to exclude chance to one in a billion."),
+            Some(name) => {
+                format!("{name} fits, but not well enough to exclude chance to one in a billion.")
+            }
             None => "Something of this key is there, but its payload cannot be read.".to_owned(),
         };
         (Verdict::Partial, Some(reason))
@@ -175,7 +242,9 @@ fn conclude(readings: Vec<Reading>) -> Extraction {
         );
         (Verdict::CannotCheck, Some(reason))
     } else {
-        let reason = format!("{owned} of the model's {addresses} distinct neighbourhoods are this key's: they agree as by chance.");
+        let reason = format!(
+            "{owned} of the model's {addresses} distinct neighbourhoods are this key's: they agree as by chance."
+        );
         (Verdict::None, Some(reason))
     };
     let shown = matches!(verdict, Verdict::Found | Verdict::Partial);

@@ -73,7 +73,11 @@ pub fn inspect(model: &[u8], files: &Files) -> Result<Inspection, Error> {
         non_manifold_edges: edges.num_non_manifold(),
         diagonal: diagonal(&mesh.positions),
         meshes: document.meshes().len(),
-        primitives: document.meshes().iter().map(|mesh| mesh.primitives.len()).sum(),
+        primitives: document
+            .meshes()
+            .iter()
+            .map(|mesh| mesh.primitives.len())
+            .sum(),
         nodes: document.nodes().len(),
         extensions_used: document.extensions_used().to_vec(),
         capacity: vec![CarrierCapacity {

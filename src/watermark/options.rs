@@ -14,7 +14,10 @@ pub struct EmbedOptions {
 
 impl Default for EmbedOptions {
     fn default() -> Self {
-        EmbedOptions { strength: Strength::BALANCED, carriers: Carrier::ALL.to_vec() }
+        EmbedOptions {
+            strength: Strength::BALANCED,
+            carriers: Carrier::ALL.to_vec(),
+        }
     }
 }
 
@@ -33,7 +36,11 @@ impl Strength {
 
     /// A strength from 0.00001 to 0.01.
     pub fn new(rms_rel: f64) -> Result<Strength, Error> {
-        if (1e-5..=1e-2).contains(&rms_rel) { Ok(Strength(rms_rel)) } else { Err(Error::Strength(rms_rel.to_string())) }
+        if (1e-5..=1e-2).contains(&rms_rel) {
+            Ok(Strength(rms_rel))
+        } else {
+            Err(Error::Strength(rms_rel.to_string()))
+        }
     }
 
     /// The fraction.
@@ -51,7 +58,10 @@ impl std::str::FromStr for Strength {
             "subtle" => Ok(Strength::SUBTLE),
             "balanced" => Ok(Strength::BALANCED),
             "strong" => Ok(Strength::STRONG),
-            _ => text.parse().map_err(|_| Error::Strength(text.to_owned())).and_then(Strength::new),
+            _ => text
+                .parse()
+                .map_err(|_| Error::Strength(text.to_owned()))
+                .and_then(Strength::new),
         }
     }
 }

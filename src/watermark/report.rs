@@ -23,7 +23,9 @@ impl Verdict {
         match self {
             Verdict::Found => "Your mark was found.",
             Verdict::Partial => "A mark fits partly.",
-            Verdict::None => "No evidence of this key. This does not prove that the model is not yours.",
+            Verdict::None => {
+                "No evidence of this key. This does not prove that the model is not yours."
+            }
             Verdict::CannotCheck => "Cannot check.",
         }
     }

@@ -25,8 +25,15 @@ pub const NEEDED_ADDRESSES: usize = 228;
 const FEW_ADDRESSES: usize = 300;
 
 /// The kind of address that an embedder takes, with the number of distinct addresses it has to give.
-pub fn choose(by_connectivity: &[u64], by_geometry: &[u64], usable: &[u32]) -> (AddressKind, usize) {
-    let (connectivity, geometry) = (num_distinct(by_connectivity, usable), num_distinct(by_geometry, usable));
+pub fn choose(
+    by_connectivity: &[u64],
+    by_geometry: &[u64],
+    usable: &[u32],
+) -> (AddressKind, usize) {
+    let (connectivity, geometry) = (
+        num_distinct(by_connectivity, usable),
+        num_distinct(by_geometry, usable),
+    );
     if connectivity >= FEW_ADDRESSES || connectivity >= geometry {
         (AddressKind::Connectivity, connectivity)
     } else {
@@ -43,12 +50,17 @@ fn num_distinct(addresses: &[u64], usable: &[u32]) -> usize {
 
 /// V addresses by connectivity: two rounds of Weisfeiler-Leman refinement that start from the valences.
 pub fn by_connectivity(rings: &Rings) -> Vec<u64> {
-    let mut hashes: Vec<u64> = (0..rings.len()).map(|v| mix(rings.valence(v) as u64 + 77)).collect();
+    let mut hashes: Vec<u64> = (0..rings.len())
+        .map(|v| mix(rings.valence(v) as u64 + 77))
+        .collect();
     for _ in 0..2 {
         hashes = (0..rings.len())
             .map(|v| {
                 let start = hashes[v].wrapping_mul(0x9E37_79B9_7F4A_7C15);
-                mix(rings.neighbours(v).iter().fold(start, |sum, &n| sum.wrapping_add(hashes[n as usize])))
+                mix(rings
+                    .neighbours(v)
+                    .iter()
+                    .fold(start, |sum, &n| sum.wrapping_add(hashes[n as usize])))
             })
             .collect();
     }
@@ -57,7 +69,11 @@ pub fn by_connectivity(rings: &Rings) -> Vec<u64> {
 
 /// V addresses by geometry: valence, and logarithms in bins of the ring's area to that of its neighbours' rings, of its
 /// longest spoke to the shortest, and of its mean square spoke to its area.
-pub fn by_geometry(positions: &[DVec3], neighbourhoods: &Neighbourhoods, features: &Features) -> Vec<u64> {
+pub fn by_geometry(
+    positions: &[DVec3],
+    neighbourhoods: &Neighbourhoods,
+    features: &Features,
+) -> Vec<u64> {
     let rings = &neighbourhoods.rings;
     let areas: Vec<f64> = features.sizes.iter().map(|size| size * size).collect();
     (0..rings.len())
@@ -65,15 +81,22 @@ pub fn by_geometry(positions: &[DVec3], neighbourhoods: &Neighbourhoods, feature
             let neighbours = rings.neighbours(v);
             let count = neighbours.len().max(1) as f64;
             let mean_area = neighbours.iter().map(|&n| areas[n as usize]).sum::<f64>() / count;
-            let squares = || neighbours.iter().map(|&n| positions[v].distance_squared(positions[n as usize]));
+            let squares = || {
+                neighbours
+                    .iter()
+                    .map(|&n| positions[v].distance_squared(positions[n as usize]))
+            };
             let mean_square = squares().sum::<f64>() / count;
-            let (shortest, longest) = squares().fold((f64::MAX, 0.0), |(s, l), q| (q.min(s), q.max(l)));
+            let (shortest, longest) =
+                squares().fold((f64::MAX, 0.0), |(s, l), q| (q.min(s), q.max(l)));
             let bins = [
                 bin(areas[v] / mean_area, 0.15),
                 bin((longest / shortest).sqrt(), 0.35),
                 bin(mean_square / areas[v], 0.3),
             ];
-            let packed = bins.iter().fold(neighbours.len() as u64, |packed, bin| packed.wrapping_mul(1024).wrapping_add(*bin));
+            let packed = bins.iter().fold(neighbours.len() as u64, |packed, bin| {
+                packed.wrapping_mul(1024).wrapping_add(*bin)
+            });
             mix(packed.wrapping_add(12345))
         })
         .collect()
@@ -82,7 +105,11 @@ pub fn by_geometry(positions: &[DVec3], neighbourhoods: &Neighbourhoods, feature
 /// The bin of a ratio's binary logarithm, 12 to 1012; 512 for ratios that are no number.
 fn bin(ratio: f64, width: f64) -> u64 {
     let bin = (libm::log2(ratio) / width).floor();
-    if bin.is_finite() { (bin.clamp(-500.0, 500.0) + 512.0) as u64 } else { 512 }
+    if bin.is_finite() {
+        (bin.clamp(-500.0, 500.0) + 512.0) as u64
+    } else {
+        512
+    }
 }
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).

@@ -25,7 +25,11 @@ const LEAST_WEIGHT: f64 = 0.05;
 const CLAMP: f64 = 4.0;
 
 /// The displacement of all V vertices that gives the host the mark: along vertex normals, its RMS at most the host's limit.
-pub fn embed(host: &Host, mark: &Mark, progress: &mut dyn Progress) -> Result<Vec<DVec3>, CarrierError> {
+pub fn embed(
+    host: &Host,
+    mark: &Mark,
+    progress: &mut dyn Progress,
+) -> Result<Vec<DVec3>, CarrierError> {
     let positions = &host.mesh.positions;
     let neighbourhoods = Neighbourhoods::new(host.mesh);
     let features = Features::new(positions, &neighbourhoods);
@@ -49,16 +53,30 @@ pub fn embed(host: &Host, mark: &Mark, progress: &mut dyn Progress) -> Result<Ve
     let mut displacement = vec![DVec3::ZERO; positions.len()];
     for round in 0..ROUNDS {
         step(progress, Stage::Embed, round as f64 / ROUNDS as f64)?;
-        let moved: Vec<DVec3> = positions.iter().zip(&displacement).map(|(p, d)| *p + *d).collect();
+        let moved: Vec<DVec3> = positions
+            .iter()
+            .zip(&displacement)
+            .map(|(p, d)| *p + *d)
+            .collect();
         let now = Features::new(&moved, &neighbourhoods);
         let addresses = match kind {
             AddressKind::Connectivity => &by_connectivity,
             AddressKind::Geometry => &address::by_geometry(&moved, &neighbourhoods, &now),
         };
-        let along: Vec<f64> = displacement.iter().zip(&normals).map(|(d, n)| d.dot(*n)).collect();
+        let along: Vec<f64> = displacement
+            .iter()
+            .zip(&normals)
+            .map(|(d, n)| d.dot(*n))
+            .collect();
         let goals = now.usable.iter().filter_map(|&vertex| {
             let owned = ownership.get(addresses[vertex as usize])?;
-            Some(linear.goal(vertex as usize, now.offsets[vertex as usize], &owned, mark, &along))
+            Some(linear.goal(
+                vertex as usize,
+                now.offsets[vertex as usize],
+                &owned,
+                mark,
+                &along,
+            ))
         });
         let solution = linear.solve(&goals.collect::<Vec<_>>());
         displacement = solution
@@ -74,7 +92,8 @@ pub fn embed(host: &Host, mark: &Mark, progress: &mut dyn Progress) -> Result<Ve
 }
 
 fn scale_to_rms(displacement: &mut [DVec3], limit: f64) {
-    let mean_square = displacement.iter().map(|d| d.length_squared()).sum::<f64>() / displacement.len() as f64;
+    let mean_square =
+        displacement.iter().map(|d| d.length_squared()).sum::<f64>() / displacement.len() as f64;
     let scale = limit / mean_square.sqrt();
     if scale < 1.0 {
         displacement.iter_mut().for_each(|d| *d *= scale);
@@ -99,10 +118,22 @@ struct Goal {
 }
 
 impl<'a> Linearization<'a> {
-    fn new(neighbourhoods: &'a Neighbourhoods, features: Features, normals: &'a [DVec3], fixed: &[u32]) -> Self {
+    fn new(
+        neighbourhoods: &'a Neighbourhoods,
+        features: Features,
+        normals: &'a [DVec3],
+        fixed: &[u32],
+    ) -> Self {
         let mut units = features.sizes.clone();
-        fixed.iter().for_each(|&vertex| units[vertex as usize] = 0.0);
-        Linearization { neighbourhoods, features, normals, units }
+        fixed
+            .iter()
+            .for_each(|&vertex| units[vertex as usize] = 0.0);
+        Linearization {
+            neighbourhoods,
+            features,
+            normals,
+            units,
+        }
     }
 
     /// (vertex, coefficient) of the displacements, in scene units, that move one ring's feature.
@@ -110,42 +141,72 @@ impl<'a> Linearization<'a> {
         let neighbours = self.neighbourhoods.rings.neighbours(vertex);
         let (own, size) = (self.features.normals[vertex], self.features.sizes[vertex]);
         let share = 1.0 / (neighbours.len() as f64 * size);
-        let others = neighbours.iter().map(move |&n| (n as usize, -share * self.normals[n as usize].dot(own)));
+        let others = neighbours
+            .iter()
+            .map(move |&n| (n as usize, -share * self.normals[n as usize].dot(own)));
         std::iter::once((vertex, 1.0 / size)).chain(others)
     }
 
     /// The nearest point of the symbol's lattice, seen from the feature's present value.
     fn goal(&self, vertex: usize, offset: f64, owned: &Owned, mark: &Mark, along: &[f64]) -> Goal {
-        let coset = if mark.codeword.sign(owned.symbol) > 0.0 { 0.0 } else { 0.5 };
+        let coset = if mark.codeword.sign(owned.symbol) > 0.0 {
+            0.0
+        } else {
+            0.5
+        };
         let phase = offset / STEP + owned.dither - coset;
         let error = phase.round() - phase;
-        let reached: f64 = self.row(vertex).map(|(v, coefficient)| coefficient * along[v]).sum();
+        let reached: f64 = self
+            .row(vertex)
+            .map(|(v, coefficient)| coefficient * along[v])
+            .sum();
         let angle = TAU * error.abs();
-        let curvature = if angle > 0.0 { libm::sin(angle) / angle } else { 1.0 };
-        Goal { vertex, change: reached + error * STEP, weight: curvature.max(LEAST_WEIGHT) }
+        let curvature = if angle > 0.0 {
+            libm::sin(angle) / angle
+        } else {
+            1.0
+        };
+        Goal {
+            vertex,
+            change: reached + error * STEP,
+            weight: curvature.max(LEAST_WEIGHT),
+        }
     }
 
     /// Displacements along the normals, in scene units: minimises the weighted squared distance to the goals plus the
     /// ridge, by conjugate gradients on the normal equations.
     fn solve(&self, goals: &[Goal]) -> Vec<f64> {
-        let rows: Vec<Vec<(usize, f64)>> =
-            goals.iter().map(|goal| self.row(goal.vertex).map(|(v, c)| (v, c * self.units[v])).collect()).collect();
+        let rows: Vec<Vec<(usize, f64)>> = goals
+            .iter()
+            .map(|goal| {
+                self.row(goal.vertex)
+                    .map(|(v, c)| (v, c * self.units[v]))
+                    .collect()
+            })
+            .collect();
         let transpose = |values: &mut dyn Iterator<Item = f64>| {
             let mut sums = vec![0.0; self.units.len()];
             for ((row, goal), value) in rows.iter().zip(goals).zip(values) {
-                row.iter().for_each(|&(v, coefficient)| sums[v] += coefficient * goal.weight * value);
+                row.iter()
+                    .for_each(|&(v, coefficient)| sums[v] += coefficient * goal.weight * value);
             }
             sums
         };
         let normal = |x: &[f64]| {
-            let mut image = rows.iter().map(|row| row.iter().map(|&(v, coefficient)| coefficient * x[v]).sum());
+            let mut image = rows
+                .iter()
+                .map(|row| row.iter().map(|&(v, coefficient)| coefficient * x[v]).sum());
             let mut y = transpose(&mut image);
             y.iter_mut().zip(x).for_each(|(y, x)| *y += RIDGE * x);
             y
         };
         let target = transpose(&mut goals.iter().map(|goal| goal.change));
         let scaled = conjugate_gradients(normal, target);
-        scaled.iter().zip(&self.units).map(|(x, unit)| x * unit).collect()
+        scaled
+            .iter()
+            .zip(&self.units)
+            .map(|(x, unit)| x * unit)
+            .collect()
     }
 }
 
@@ -163,10 +224,18 @@ fn conjugate_gradients(apply: impl Fn(&[f64]) -> Vec<f64>, b: Vec<f64>) -> Vec<f
         }
         let image = apply(&direction);
         let length = square / dot(&direction, &image);
-        x.iter_mut().zip(&direction).for_each(|(x, d)| *x += length * d);
-        residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= length * i);
+        x.iter_mut()
+            .zip(&direction)
+            .for_each(|(x, d)| *x += length * d);
+        residual
+            .iter_mut()
+            .zip(&image)
+            .for_each(|(r, i)| *r -= length * i);
         let previous = std::mem::replace(&mut square, dot(&residual, &residual));
-        direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + square / previous * *d);
+        direction
+            .iter_mut()
+            .zip(&residual)
+            .for_each(|(d, r)| *d = r + square / previous * *d);
     }
     x
 }

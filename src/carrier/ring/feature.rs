@@ -40,10 +40,19 @@ impl Features {
         let sizes: Vec<f64> = areas.iter().map(|area| area.length().sqrt()).collect();
         let normals: Vec<DVec3> = areas.iter().map(|area| area.normalize_or_zero()).collect();
         let offsets: Vec<f64> = (0..positions.len())
-            .map(|v| (positions[v] - ring_mean(positions, rings.neighbours(v))).dot(normals[v]) / sizes[v])
+            .map(|v| {
+                (positions[v] - ring_mean(positions, rings.neighbours(v))).dot(normals[v])
+                    / sizes[v]
+            })
             .collect();
-        let usable = (0..positions.len()).filter(|&v| rings.is_closed(v) && (offsets[v] as f32).is_finite());
-        Features { usable: usable.map(|v| v as u32).collect(), offsets, normals, sizes }
+        let usable =
+            (0..positions.len()).filter(|&v| rings.is_closed(v) && (offsets[v] as f32).is_finite());
+        Features {
+            usable: usable.map(|v| v as u32).collect(),
+            offsets,
+            normals,
+            sizes,
+        }
     }
 }
 
@@ -61,5 +70,9 @@ fn ring_areas(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
 }
 
 fn ring_mean(positions: &[DVec3], neighbours: &[u32]) -> DVec3 {
-    neighbours.iter().map(|&n| positions[n as usize]).sum::<DVec3>() / neighbours.len().max(1) as f64
+    neighbours
+        .iter()
+        .map(|&n| positions[n as usize])
+        .sum::<DVec3>()
+        / neighbours.len().max(1) as f64
 }

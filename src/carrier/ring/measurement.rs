@@ -59,7 +59,10 @@ impl Capacity {
         let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
         let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
         let (_, num_addresses) = address::choose(&by_connectivity, &by_geometry, &features.usable);
-        Capacity { num_addresses, num_rings: features.usable.len() }
+        Capacity {
+            num_addresses,
+            num_rings: features.usable.len(),
+        }
     }
 }
 
@@ -81,7 +84,10 @@ impl Measurement {
     fn from_samples(mut samples: Vec<Sample>) -> Measurement {
         let rank = |s: &Sample| (s.by_connectivity, s.by_geometry, s.offset.to_bits());
         samples.sort_unstable_by_key(rank);
-        let sums = AddressKind::ALL.into_iter().flat_map(|kind| sums(&samples, kind)).collect();
+        let sums = AddressKind::ALL
+            .into_iter()
+            .flat_map(|kind| sums(&samples, kind))
+            .collect();
         Measurement { samples, sums }
     }
 
@@ -128,7 +134,9 @@ impl Measurement {
                 })
             })
             .collect();
-        rest.is_empty().then(|| samples.map(Measurement::from_samples)).flatten()
+        rest.is_empty()
+            .then(|| samples.map(Measurement::from_samples))
+            .flatten()
     }
 }
 
@@ -153,10 +161,16 @@ fn sums(samples: &[Sample], kind: AddressKind) -> Vec<Vec<Sum>> {
                 let (count, re, im) = group
                     .iter()
                     .filter(|(_, offset, ..)| offset.abs() < cut)
-                    .fold((0, 0.0, 0.0), |(count, re, im), ring| (count + 1, re + ring.2, im + ring.3));
+                    .fold((0, 0.0, 0.0), |(count, re, im), ring| {
+                        (count + 1, re + ring.2, im + ring.3)
+                    });
                 let length = libm::hypot(re, im);
                 let scale = (LIMIT / length).min(1.0 / f64::from(count).sqrt());
-                (count > 0).then_some(Sum { address: group[0].0, re: re * scale, im: im * scale })
+                (count > 0).then_some(Sum {
+                    address: group[0].0,
+                    re: re * scale,
+                    im: im * scale,
+                })
             })
             .collect()
     };

@@ -48,7 +48,9 @@ impl Ownership {
     fn get(&self, address: u64) -> Option<Owned> {
         let (dither, choice) = self.0.at(address);
         let unit = 1.0 / (1u64 << 53) as f64;
-        (choice % SHARE == 0)
-            .then(|| Owned { dither: (dither >> 11) as f64 * unit, symbol: Symbol::select(choice / SHARE) })
+        (choice % SHARE == 0).then(|| Owned {
+            dither: (dither >> 11) as f64 * unit,
+            symbol: Symbol::select(choice / SHARE),
+        })
     }
 }

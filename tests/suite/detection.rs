@@ -1,0 +1,74 @@
+//! The bound: what it is, that it holds, and that it survives extreme numbers.
+
+use crate::support::fixtures::key;
+use meshmark::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
+use std::f64::consts::TAU;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_bound_is_the_squared_sum_over_the_energy() {
+    let statistic = Statistic::new([(3.0, 4.0), (-1.0, 2.0), (2.0, 2.0)]);
+    assert!((statistic.ln_p() + 16.0 / 24.0).abs() < 1e-12);
+    assert_eq!(statistic.agreement(), 0.5);
+    assert!((statistic.ln_p_at_best() + 64.0 / 24.0).abs() < 1e-12);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_nothing_and_disagreement_prove_nothing() {
+    assert_eq!(Statistic::new([]).ln_p(), 0.0);
+    assert_eq!(Statistic::new([]).agreement(), 0.0);
+    assert_eq!(Statistic::new([(-5.0, 5.0)]).ln_p(), 0.0);
+    assert_eq!(Statistic::new([(0.0, 0.0)]).ln_p(), 0.0);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_neither_underflows_nor_overflows() {
+    for scale in [1e-150, 1.0, 1e150] {
+        let statistic = Statistic::new((0..2_000).map(|_| (scale, scale)));
+        assert!(
+            (statistic.ln_p() + 2_000.0).abs() < 1e-6,
+            "{scale}: {}",
+            statistic.ln_p()
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_unions_add_logarithms_and_end_at_certainty() {
+    assert_eq!(union(-10.0, libm::log(4.0)), -10.0 + libm::log(4.0));
+    assert_eq!(union(-1.0, 5.0), 0.0);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_thresholds_are_what_they_say() {
+    assert!((LN_P_FOUND - libm::log(1e-9)).abs() < 1e-12);
+    assert!((LN_P_TRACE - libm::log(1e-4)).abs() < 1e-12);
+}
+
+/// Random dithers on weights of every size: each tail of the statistic stays below its bound.
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_bound_holds_for_random_dithers() {
+    const TRIALS: u64 = 4_000;
+    let random = key(3).prf("dither");
+    let ln_p = |trial: u64| {
+        Statistic::new((0..40).map(|i| {
+            let weight = 1.0 + (i % 7) as f64;
+            let uniform = random.at(trial * 40 + i).0 as f64 / u64::MAX as f64;
+            (weight * libm::cos(TAU * uniform), weight)
+        }))
+        .ln_p()
+    };
+    let values: Vec<f64> = (0..TRIALS).map(ln_p).collect();
+    for threshold in [1.0, 2.0, 3.0, 4.0, 6.0] {
+        let seen = values.iter().filter(|&&ln_p| ln_p <= -threshold).count() as f64;
+        let allowed = TRIALS as f64 * libm::exp(-threshold);
+        assert!(
+            seen <= allowed + 4.0 * allowed.sqrt(),
+            "ln p <= -{threshold}: {seen} of {TRIALS}, bound {allowed}"
+        );
+    }
+    assert!(
+        values.iter().any(|&ln_p| ln_p < -2.0),
+        "the bound is of the right order, not idle"
+    );
+}

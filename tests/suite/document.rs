@@ -1,0 +1,11 @@
+//! Lossless glTF.
+
+mod cases;
+mod examples;
+#[cfg(not(target_arch = "wasm32"))]
+mod fuzzed;
+mod laws;
+mod malformed;
+#[cfg(not(target_arch = "wasm32"))]
+mod models;
+mod oracle;

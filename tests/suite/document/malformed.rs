@@ -1,0 +1,652 @@
+//! Malformed and unsupported files: each is refused with its code and the place.
+
+use meshmark::document::{Document, DocumentError, Files};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::support::gltf_builder::{
+    Component, GltfBuilder, Layout, Model, Packing, glb, primitive,
+};
+
+const POINTS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Dense positions (accessor 0), indices (1), sparse positions (2) and two nodes, with external buffers.
+fn sound() -> GltfBuilder {
+    let mut builder = GltfBuilder::new(Packing::External);
+    let dense = builder.positions(0, Layout::F32, &POINTS);
+    let indices = builder.indices(0, Component::U16, &[0, 1, 2]);
+    let sparse = builder.sparse_positions(0, Layout::F32, &POINTS, &[1, 3], true);
+    builder.mesh(&[
+        primitive(dense, Some(indices), 4),
+        primitive(sparse, None, 4),
+    ]);
+    builder.node(r#"{"mesh":0,"children":[1]}"#);
+    builder.node(r#"{"name":"child"}"#);
+    builder
+        .members
+        .push(r#""scenes":[{"nodes":[0]}],"skins":[]"#.into());
+    builder
+}
+
+/// Reads all there is to read.
+fn read(bytes: &[u8], files: &Files) -> Result<(), DocumentError> {
+    let document = Document::read(bytes, files)?;
+    for (mesh, content) in document.meshes().iter().enumerate() {
+        for (part, primitive) in content.primitives.iter().enumerate() {
+            document.triangles(mesh, part)?;
+            if let Some(accessor) = primitive.position {
+                document.positions(accessor)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn assert_refused(name: &str, bytes: &[u8], files: &Files, code: &str, pointer: Option<&str>) {
+    let error = read(bytes, files).expect_err(name);
+    assert_eq!(
+        (error.code(), error.pointer()),
+        (code, pointer),
+        "{name}: {error}"
+    );
+    let message = error.to_string();
+    assert!(
+        message.len() > 20 && !message.contains("  "),
+        "{name}: {message}"
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_sound_file_is_read() {
+    let Model { bytes, files } = sound().build();
+    assert_eq!(read(&bytes, &files), Ok(()));
+}
+
+/// A text to look for in the sound file's JSON, what to put in its place, and the refusal.
+type Replacement<'a> = (&'a str, &'a str, &'a str, Option<&'a str>);
+
+#[wasm_bindgen_test(unsupported = test)]
+fn malformed_json_is_refused() {
+    let replacements: &[Replacement] = &[
+        // Text and types.
+        (r#"{"asset""#, r#"{"asset"#, "document.bad-json", None),
+        (
+            r#"{"asset":{"version":"2.0"},"#,
+            "{",
+            "document.bad-json",
+            None,
+        ),
+        (
+            r#""version":"2.0""#,
+            r#""version":"1.0""#,
+            "document.version-unsupported",
+            Some("/asset/version"),
+        ),
+        (
+            r#""skins":[]"#,
+            r#""skins":[],"skins":[]"#,
+            "document.bad-json",
+            None,
+        ),
+        (
+            r#""skins":[]"#,
+            r#""skins":{}"#,
+            "document.bad-json",
+            Some("/skins"),
+        ),
+        (
+            r#""count":4"#,
+            r#""count":-4"#,
+            "document.bad-json",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""count":4"#,
+            r#""count":4.5"#,
+            "document.bad-json",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""count":4,"#,
+            "",
+            "document.bad-json",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""children":[1]"#,
+            r#""children":[1],"matrix":[1,2]"#,
+            "document.bad-json",
+            Some("/nodes/0"),
+        ),
+        (
+            r#""children":[1]"#,
+            r#""children":[1],"scale":[1,1e999,1]"#,
+            "document.bad-json",
+            Some("/nodes/0"),
+        ),
+        (
+            r#""mode":4"#,
+            r#""mode":9"#,
+            "document.bad-json",
+            Some("/meshes/0/primitives/0/mode"),
+        ),
+        // Accessors.
+        (
+            r#""componentType":5126"#,
+            r#""componentType":5124"#,
+            "document.bad-accessor",
+            Some("/accessors/0/componentType"),
+        ),
+        (
+            r#""componentType":5126"#,
+            r#""componentType":5125"#,
+            "document.bad-accessor",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""type":"VEC3""#,
+            r#""type":"VEC5""#,
+            "document.bad-accessor",
+            Some("/accessors/0/type"),
+        ),
+        (
+            r#""type":"VEC3""#,
+            r#""type":"VEC2""#,
+            "document.bad-accessor",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""componentType":5123,"count":3"#,
+            r#""componentType":5122,"count":3"#,
+            "document.bad-accessor",
+            Some("/accessors/1"),
+        ),
+        (
+            r#""count":4"#,
+            r#""count":5"#,
+            "document.out-of-bounds",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""count":4"#,
+            r#""count":18446744073709551615"#,
+            "document.out-of-bounds",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""byteOffset":0,"componentType""#,
+            r#""byteOffset":4,"componentType""#,
+            "document.out-of-bounds",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""byteOffset":0,"componentType""#,
+            r#""byteOffset":18446744073709551615,"componentType""#,
+            "document.out-of-bounds",
+            Some("/accessors/0"),
+        ),
+        (r#""bufferView":0,"#, "", "document.out-of-bounds", None),
+        (
+            r#""bufferView":0,"#,
+            r#""bufferView":99,"#,
+            "document.bad-index",
+            Some("/accessors/0/bufferView"),
+        ),
+        (
+            r#""bufferView":0,"#,
+            r#""bufferView":4294967296,"#,
+            "document.bad-index",
+            Some("/accessors/0/bufferView"),
+        ),
+        // Sparse accessors.
+        (
+            r#""sparse":{"count":2"#,
+            r#""sparse":{"count":5"#,
+            "document.bad-accessor",
+            Some("/accessors/2/sparse/count"),
+        ),
+        (
+            r#""sparse":{"count":2"#,
+            r#""sparse":{"count":3"#,
+            "document.out-of-bounds",
+            Some("/accessors/2/sparse/indices"),
+        ),
+        (
+            r#""indices":{"bufferView":3,"componentType":5123"#,
+            r#""indices":{"bufferView":3,"componentType":5126"#,
+            "document.bad-accessor",
+            Some("/accessors/2/sparse/indices/componentType"),
+        ),
+        (
+            r#""indices":{"bufferView":3,"#,
+            r#""indices":{"bufferView":0,"#,
+            "document.bad-accessor",
+            Some("/accessors/2/sparse/indices"),
+        ),
+        (
+            r#""values":{"bufferView":4"#,
+            r#""values":{"bufferView":9"#,
+            "document.bad-index",
+            Some("/accessors/2/sparse/values/bufferView"),
+        ),
+        // Buffer views and buffers.
+        (
+            r#""buffer":0,"byteOffset":0"#,
+            r#""buffer":1,"byteOffset":0"#,
+            "document.bad-index",
+            Some("/bufferViews/0/buffer"),
+        ),
+        (
+            r#""byteOffset":0,"byteLength":48"#,
+            r#""byteOffset":0,"byteLength":4800"#,
+            "document.out-of-bounds",
+            Some("/bufferViews/0"),
+        ),
+        (
+            r#""byteOffset":0,"byteLength":48"#,
+            r#""byteOffset":18446744073709551615,"byteLength":48"#,
+            "document.out-of-bounds",
+            Some("/bufferViews/0"),
+        ),
+        (
+            r#""byteLength":48}"#,
+            r#""byteLength":48,"byteStride":8}"#,
+            "document.bad-accessor",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""byteLength":48}"#,
+            r#""byteLength":48,"byteStride":0}"#,
+            "document.bad-accessor",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""byteLength":48}"#,
+            r#""byteLength":48,"byteStride":16}"#,
+            "document.out-of-bounds",
+            Some("/accessors/0"),
+        ),
+        (
+            r#"[{"byteLength":"#,
+            r#"[{"byteLength":9"#,
+            "document.truncated",
+            Some("/buffers/0/byteLength"),
+        ),
+        (
+            "part%200.bin",
+            "other.bin",
+            "document.missing-file",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            r#""uri":"part%200.bin""#,
+            r#""name":"gone""#,
+            "document.missing-data",
+            Some("/buffers/0"),
+        ),
+        (
+            r#""uri":"part%200.bin""#,
+            r#""uri":7"#,
+            "document.bad-json",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:text/plain,hello",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:;base64",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:;base64,AA*A",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:;base64,AA%4",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            r"data:;base64,AA\n",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:;base64,é",
+            "document.bad-data-uri",
+            Some("/buffers/0/uri"),
+        ),
+        (
+            "part%200.bin",
+            "data:;base64,AAAA",
+            "document.truncated",
+            Some("/buffers/0/byteLength"),
+        ),
+        // References.
+        (
+            r#""POSITION":0"#,
+            r#""POSITION":3"#,
+            "document.bad-index",
+            Some("/meshes/0/primitives/0/attributes/POSITION"),
+        ),
+        (
+            r#""POSITION":0"#,
+            r#""POSITION":0,"NORMAL":3"#,
+            "document.bad-index",
+            Some("/meshes/0/primitives/0/attributes/NORMAL"),
+        ),
+        (
+            r#""POSITION":0"#,
+            r#""POSITION":1"#,
+            "document.bad-accessor",
+            Some("/accessors/1"),
+        ),
+        (
+            r#""indices":1"#,
+            r#""indices":0"#,
+            "document.bad-accessor",
+            Some("/accessors/0"),
+        ),
+        (
+            r#""indices":1"#,
+            r#""indices":8"#,
+            "document.bad-index",
+            Some("/meshes/0/primitives/0/indices"),
+        ),
+        (
+            r#""indices":1"#,
+            r#""indices":1,"targets":[{},{"POSITION":8}]"#,
+            "document.bad-index",
+            Some("/meshes/0/primitives/0/targets/1/POSITION"),
+        ),
+        (
+            r#""mesh":0"#,
+            r#""mesh":1"#,
+            "document.bad-index",
+            Some("/nodes/0/mesh"),
+        ),
+        (
+            r#""mesh":0"#,
+            r#""mesh":0,"skin":0"#,
+            "document.bad-index",
+            Some("/nodes/0/skin"),
+        ),
+        (
+            r#""skins":[]"#,
+            r#""images":[{"bufferView":9}]"#,
+            "document.bad-index",
+            Some("/images/0/bufferView"),
+        ),
+        (
+            r#""skins":[]"#,
+            r#""animations":[{"samplers":[{"input":0,"output":9}]}]"#,
+            "document.bad-index",
+            Some("/animations/0/samplers/0/output"),
+        ),
+        // The scene graph.
+        (
+            r#""children":[1]"#,
+            r#""children":[2]"#,
+            "document.bad-index",
+            Some("/nodes/0/children/0"),
+        ),
+        (
+            r#""children":[1]"#,
+            r#""children":[0]"#,
+            "document.cyclic-nodes",
+            Some("/nodes/0"),
+        ),
+        (
+            r#""name":"child""#,
+            r#""children":[0]"#,
+            "document.cyclic-nodes",
+            Some("/nodes/0"),
+        ),
+        (
+            r#""children":[1]"#,
+            r#""children":[1,1]"#,
+            "document.shared-node",
+            Some("/nodes/0/children/1"),
+        ),
+        (
+            r#""nodes":[0]"#,
+            r#""nodes":[0,1]"#,
+            "document.not-a-root",
+            Some("/scenes/0/nodes/1"),
+        ),
+        (
+            r#""nodes":[0]"#,
+            r#""nodes":[2]"#,
+            "document.bad-index",
+            Some("/scenes/0/nodes/0"),
+        ),
+        // Extensions.
+        (
+            r#""skins":[]"#,
+            r#""extensionsRequired":["KHR_texture_transform","VENDOR_geometry"]"#,
+            "document.extension-unsupported",
+            Some("/extensionsRequired/1"),
+        ),
+        (
+            r#""skins":[]"#,
+            r#""extensionsRequired":["KHR_draco_mesh_compression"]"#,
+            "document.compression-unsupported",
+            Some("/extensionsRequired/0"),
+        ),
+        (
+            r#""mode":4"#,
+            r#""mode":4,"extensions":{"KHR_draco_mesh_compression":{}}"#,
+            "document.compression-unsupported",
+            Some("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression"),
+        ),
+        (
+            r#""byteLength":48}"#,
+            r#""byteLength":48,"extensions":{"EXT_meshopt_compression":{}}}"#,
+            "document.compression-unsupported",
+            Some("/bufferViews/0/extensions/EXT_meshopt_compression"),
+        ),
+        (
+            r#""byteLength":48}"#,
+            r#""byteLength":48,"extensions":{"KHR_meshopt_compression":{}}}"#,
+            "document.compression-unsupported",
+            Some("/bufferViews/0/extensions/KHR_meshopt_compression"),
+        ),
+    ];
+    let Model { files, .. } = sound().build();
+    let json = sound().json();
+    for &(old, new, code, pointer) in replacements {
+        assert!(json.contains(old), "{old} is not in {json}");
+        // Without its view, accessor 0 is zeros and sound; its buffer view is then of unknown use.
+        if old == r#""bufferView":0,"# && new.is_empty() {
+            assert_eq!(read(json.replacen(old, new, 1).as_bytes(), &files), Ok(()));
+            continue;
+        }
+        assert_refused(
+            new,
+            json.replacen(old, new, 1).as_bytes(),
+            &files,
+            code,
+            pointer,
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn malformed_numbers_in_buffers_are_refused() {
+    let change = |offset: usize, bytes: &[u8]| {
+        let Model {
+            bytes: json,
+            mut files,
+        } = sound().build();
+        let buffer = files.get_mut("part 0.bin").expect("the buffer");
+        buffer[offset..offset + bytes.len()].copy_from_slice(bytes);
+        (json, files)
+    };
+    // Positions are the first 48 bytes; indices follow, then the sparse base (48), indices and values.
+    let sparse_indices = 48 + 8 + 48;
+    for (name, value) in [("NaN", f32::NAN), ("infinity", f32::INFINITY)] {
+        let (json, files) = change(16, &value.to_le_bytes());
+        assert_refused(
+            name,
+            &json,
+            &files,
+            "document.non-finite-position",
+            Some("/accessors/0"),
+        );
+        let (json, files) = change(sparse_indices + 4 + 12, &value.to_le_bytes());
+        assert_refused(
+            name,
+            &json,
+            &files,
+            "document.non-finite-position",
+            Some("/accessors/2"),
+        );
+    }
+    let indices = Some("/meshes/0/primitives/0/indices");
+    let (json, files) = change(50, &4_u16.to_le_bytes());
+    assert_refused(
+        "vertex 4 of 4",
+        &json,
+        &files,
+        "document.bad-vertex",
+        indices,
+    );
+    let (json, files) = change(50, &u16::MAX.to_le_bytes());
+    assert_refused(
+        "restart",
+        &json,
+        &files,
+        "document.primitive-restart",
+        indices,
+    );
+    for (name, value) in [("descending", 3_u16), ("twice", 3), ("beyond", 4)] {
+        let place = if name == "beyond" {
+            sparse_indices + 2
+        } else {
+            sparse_indices
+        };
+        let (json, files) = change(place, &value.to_le_bytes());
+        assert_refused(
+            name,
+            &json,
+            &files,
+            "document.bad-accessor",
+            Some("/accessors/2/sparse/indices"),
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_lying_count_without_data_allocates_nothing() {
+    let mut builder = sound();
+    builder.accessors[0] = r#"{"componentType":5126,"count":4000000000,"type":"VEC3"}"#.into();
+    let Model { bytes, files } = builder.build();
+    assert_refused(
+        "zeros",
+        &bytes,
+        &files,
+        "document.too-large",
+        Some("/accessors/0/count"),
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn malformed_containers_are_refused() {
+    let json = br#"{"asset":{"version":"2.0"}}     "#.to_vec();
+    let sound = glb(&[
+        (*b"JSON", json.clone()),
+        (*b"BIN\0", vec![0; 8]),
+        (*b"MORE", vec![1; 4]),
+    ]);
+    let none = Files::new();
+    assert_eq!(read(&sound, &none), Ok(()));
+    let refused =
+        |name: &str, bytes: &[u8], code: &str| assert_refused(name, bytes, &none, code, None);
+
+    refused("nothing", b"", "document.bad-container");
+    refused(
+        "another file",
+        b"\x89PNG\r\n\x1a\n",
+        "document.bad-container",
+    );
+    refused(
+        "a JSON text of another kind",
+        b"[]",
+        "document.bad-container",
+    );
+    refused(
+        "a torn JSON text",
+        br#"{"asset":{"ver"#,
+        "document.bad-json",
+    );
+    for length in 4..sound.len() {
+        refused("truncated", &sound[..length], "document.truncated");
+    }
+    let longer = [&sound[..], b"!"].concat();
+    refused("more bytes than stated", &longer, "document.bad-container");
+    let change = |offset: usize, bytes: &[u8]| {
+        let mut model = sound.clone();
+        model[offset..offset + bytes.len()].copy_from_slice(bytes);
+        model
+    };
+    refused(
+        "a JSON chunk beyond the end",
+        &change(12, &u32::MAX.to_le_bytes()),
+        "document.truncated",
+    );
+    let binary = 20 + json.len();
+    refused(
+        "a binary chunk beyond the end",
+        &change(binary, &100_u32.to_le_bytes()),
+        "document.truncated",
+    );
+    refused(
+        "another chunk beyond the end",
+        &change(binary + 16, &5_u32.to_le_bytes()),
+        "document.truncated",
+    );
+    refused("a header without chunks", &glb(&[]), "document.truncated");
+    refused(
+        "a binary chunk first",
+        &glb(&[(*b"BIN\0", vec![0; 4])]),
+        "document.bad-container",
+    );
+    refused("no UTF-8", &change(25, &[0xff]), "document.bad-json");
+    assert_refused(
+        "GLB 1",
+        &change(4, &[1]),
+        &none,
+        "document.version-unsupported",
+        Some("/asset/version"),
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_chunk_length_is_not_the_buffer_length() {
+    let json = br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":9}]}"#.to_vec();
+    let model = glb(&[(*b"JSON", json.clone()), (*b"BIN\0", vec![0; 8])]);
+    assert_refused(
+        "short",
+        &model,
+        &Files::new(),
+        "document.truncated",
+        Some("/buffers/0/byteLength"),
+    );
+    let model = glb(&[(*b"JSON", json)]);
+    assert_refused(
+        "absent",
+        &model,
+        &Files::new(),
+        "document.missing-data",
+        Some("/buffers/0"),
+    );
+}

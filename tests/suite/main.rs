@@ -1,0 +1,21 @@
+//! The test suite: the same tests natively, in node and in a browser, over the same generated fixtures.
+
+#[cfg(feature = "browser")]
+wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_browser);
+
+mod architecture;
+mod code;
+mod detection;
+mod document;
+mod evidence;
+mod geometry;
+mod golden;
+mod key;
+mod mesh;
+mod models;
+mod payload;
+mod ring;
+mod robustness;
+mod scene;
+mod support;
+mod watermark;

@@ -1,0 +1,129 @@
+//! Research and sample models, where they lie beside the project; elsewhere these tests say that they were skipped.
+#![cfg(not(target_arch = "wasm32"))]
+
+use crate::support::fixtures::{key, payload};
+use glam::DVec3;
+use meshmark::attack::crop;
+use meshmark::document::Document;
+use meshmark::mesh::Mesh;
+use meshmark::scene::{Scene, to_glb};
+use meshmark::{EmbedOptions, Evidence, Files, Strength, Verdict, embed, extract, ignore};
+use std::path::{Path, PathBuf};
+
+fn model(name: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../shared/models")
+        .join(name);
+    if !path.exists() {
+        println!("skipped: {name} is not here");
+        return None;
+    }
+    Some(path)
+}
+
+/// Positions and polygons of a Wavefront .obj, polygons as fans.
+fn read_obj(path: &Path) -> Mesh {
+    let mut mesh = Mesh::default();
+    for line in std::fs::read_to_string(path).unwrap().lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => mesh.positions.push(DVec3::from_slice(
+                &words
+                    .take(3)
+                    .map(|w| w.parse().unwrap())
+                    .collect::<Vec<f64>>(),
+            )),
+            Some("f") => {
+                let corner =
+                    |word: &str| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                let corners: Vec<u32> = words.map(corner).collect();
+                mesh.triangles.extend(
+                    corners
+                        .windows(2)
+                        .skip(1)
+                        .map(|pair| [corners[0], pair[0], pair[1]]),
+                );
+            }
+            _ => {}
+        }
+    }
+    mesh
+}
+
+#[test]
+fn models_bunny_is_found_in_half_of_itself() {
+    let Some(path) = model("obj/stanford-bunny.obj") else {
+        return;
+    };
+    let host = to_glb(&read_obj(&path));
+    let options = EmbedOptions {
+        strength: Strength::new(0.0001).unwrap(),
+        ..EmbedOptions::default()
+    };
+    let marked = embed(
+        &host,
+        &Files::new(),
+        payload(),
+        &key(9),
+        &options,
+        &mut ignore,
+    )
+    .unwrap();
+    assert!(
+        marked.report.rms_rel <= 0.00011,
+        "{}",
+        marked.report.rms_rel
+    );
+    let mesh = Scene::gather(&Document::read(&marked.model, &Files::new()).unwrap())
+        .unwrap()
+        .mesh;
+    for seed in 20..23 {
+        let half = extract(&Evidence::measure(&crop(&mesh, 0.5, seed)), &key(9));
+        assert_eq!(
+            (half.verdict, half.tag.as_deref()),
+            (Verdict::Found, Some("ADA-1"))
+        );
+        assert!(half.ln_p < -1000.0, "{}", half.ln_p);
+    }
+}
+
+#[test]
+fn models_knight_is_marked_and_found() {
+    let Some(path) = model("gltf/chr_knight.glb") else {
+        return;
+    };
+    let host = std::fs::read(path).unwrap();
+    let marked = embed(
+        &host,
+        &Files::new(),
+        payload(),
+        &key(9),
+        &EmbedOptions::default(),
+        &mut ignore,
+    )
+    .unwrap();
+    assert!(
+        marked.report.read_back.ln_p < -40.0,
+        "{:?}",
+        marked.report.read_back
+    );
+}
+
+#[test]
+fn models_regular_shapes_are_refused_in_numbers() {
+    let Some(path) = model("gltf/ShapeCollection.glb") else {
+        return;
+    };
+    let host = std::fs::read(path).unwrap();
+    let error = embed(
+        &host,
+        &Files::new(),
+        payload(),
+        &key(9),
+        &EmbedOptions::default(),
+        &mut ignore,
+    )
+    .unwrap_err();
+    assert_eq!(error.code(), "carrier.too-few-addresses");
+    assert!(error.to_string().contains("34 distinct"), "{error}");
+}

@@ -1,0 +1,237 @@
+//! From documents to meshes and back.
+
+use crate::support::fixtures::gallery;
+use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
+use glam::DVec3;
+use meshmark::document::Document;
+use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::scene::{MAX_ELEMENTS, Scene, to_glb};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn read(model: &Model) -> Document {
+    Document::read(&model.bytes, &model.files).unwrap()
+}
+
+/// A document of one triangle mesh, shown by the given nodes (JSON text behind `"mesh":0`).
+fn shown(points: &[[f64; 3]], indices: &[u32], nodes: &[&str]) -> Document {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, points);
+    let indices = builder.indices(0, Component::U16, indices);
+    let mesh = builder.mesh(&[primitive(position, Some(indices), 4)]);
+    for node in nodes {
+        builder.node(&format!(r#"{{"mesh":{mesh}{node}}}"#));
+    }
+    read(&builder.build())
+}
+
+const TRIANGLE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_copies_at_a_seam_are_one_vertex() {
+    let points = [
+        TRIANGLE[0],
+        TRIANGLE[1],
+        TRIANGLE[2],
+        TRIANGLE[1],
+        [1.0, 1.0, 0.0],
+        [-0.0, 1.0, 0.0],
+    ];
+    let mut document = shown(&points, &[0, 1, 2, 3, 4, 5], &[""]);
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(
+        (scene.mesh.positions.len(), scene.mesh.triangles.len()),
+        (4, 2)
+    );
+    assert_eq!(
+        Edges::new(&scene.mesh).num_boundary(),
+        4,
+        "the seam is closed; -0 is 0"
+    );
+    let displacement: Vec<DVec3> = (0..4).map(|v| DVec3::Z * f64::from(v) * 0.125).collect();
+    scene.scatter(&mut document, &displacement).unwrap();
+    let moved = document.positions(0).unwrap();
+    assert_eq!(moved[1], moved[3]);
+    assert_eq!(moved[2], moved[5]);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_places_nodes_in_world_space() {
+    let mut builder = GltfBuilder::new(Packing::DataUri);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    let mesh = builder.mesh(&[primitive(position, None, 4)]);
+    builder.node(r#"{"children":[1],"translation":[10,0,0],"scale":[2,2,2]}"#);
+    builder.node(&format!(
+        r#"{{"mesh":{mesh},"rotation":[0,0,0.7071067811865476,0.7071067811865476]}}"#
+    ));
+    let scene = Scene::gather(&read(&builder.build())).unwrap();
+    let expected = [[10.0, 0.0, 0.0], [10.0, 2.0, 0.0], [8.0, 0.0, 0.0]].map(DVec3::from_array);
+    assert!(
+        scene
+            .mesh
+            .positions
+            .iter()
+            .zip(expected)
+            .all(|(p, e)| p.distance(e) < 1e-6),
+        "{:?}",
+        scene.mesh.positions
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_mirrored_nodes_keep_their_outside() {
+    let plain = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[""])).unwrap();
+    let mirrored = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[r#","scale":[-1,1,1]"#])).unwrap();
+    let normal = |mesh: &Mesh| {
+        let [a, b, c] = mesh.corners(mesh.triangles[0]);
+        (b - a).cross(c - a)
+    };
+    assert_eq!(normal(&plain.mesh), normal(&mirrored.mesh));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_instances_share_one_displacement() {
+    let mut document = shown(
+        &TRIANGLE,
+        &[0, 1, 2],
+        &["", r#","translation":[5,0,0],"scale":[3,3,3]"#],
+    );
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.mesh.positions.len(), 6);
+    assert_eq!(scene.admissible.orbits.len(), 3);
+    let mut displacement = vec![DVec3::ZERO; 6];
+    displacement[0] = DVec3::new(0.0, 0.0, 1.0);
+    scene.admissible.project(&mut displacement);
+    scene.scatter(&mut document, &displacement).unwrap();
+    let after = Scene::gather(&document).unwrap().mesh.positions;
+    let change: Vec<f64> = after
+        .iter()
+        .zip(&scene.mesh.positions)
+        .map(|(a, b)| (*a - *b).z)
+        .collect();
+    assert!(
+        (change[0] - 0.1).abs() < 1e-6 && (change[3] - 0.3).abs() < 1e-6,
+        "{change:?}"
+    );
+    assert!([1, 2, 4, 5].iter().all(|&v| change[v] == 0.0));
+}
+
+/// A half and its mirror image touch along x = 0: vertices there may not leave the plane, and are fixed.
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_instances_that_contradict_each_other_are_fixed() {
+    let document = shown(&TRIANGLE, &[0, 1, 2], &["", r#","scale":[-1,1,1]"#]);
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.mesh.positions.len(), 4);
+    assert_eq!(scene.admissible.fixed, [0, 2]);
+    assert_eq!(scene.admissible.orbits.len(), 1);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_flattened_node_cannot_be_written() {
+    let scene = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[r#","scale":[1,1,0]"#])).unwrap();
+    assert_eq!(scene.admissible.fixed, [0, 1, 2]);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_two_accessors_of_the_same_bytes_are_the_same_vertices() {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    let again = builder.positions_at(0, 0, Layout::F32, &TRIANGLE);
+    let meshes = [position, again].map(|position| builder.mesh(&[primitive(position, None, 4)]));
+    builder.node(&format!(r#"{{"mesh":{}}}"#, meshes[0]));
+    builder.node(&format!(
+        r#"{{"mesh":{},"translation":[0,0,4]}}"#,
+        meshes[1]
+    ));
+    let mut document = read(&builder.build());
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.admissible.orbits.len(), 3);
+    let displacement = vec![DVec3::X * 0.25; 6];
+    scene.scatter(&mut document, &displacement).unwrap();
+    let after = scene.positions_in(&document).unwrap();
+    assert!(
+        after
+            .iter()
+            .zip(&scene.mesh.positions)
+            .all(|(a, b)| *a - *b == DVec3::X * 0.25)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_degenerate_triangles_and_unused_vertices_are_no_part_of_it() {
+    let points = [
+        TRIANGLE[0],
+        TRIANGLE[1],
+        TRIANGLE[2],
+        [7.0, 7.0, 7.0],
+        TRIANGLE[0],
+    ];
+    let scene = Scene::gather(&shown(&points, &[0, 1, 2, 0, 4, 1, 1, 1, 2], &[""])).unwrap();
+    assert_eq!(
+        (scene.mesh.positions.len(), scene.mesh.triangles.len()),
+        (3, 1)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_without_triangles_is_refused() {
+    for nodes in [&[][..], &[r#","scale":[0,0,0]"#][..]] {
+        let error = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], nodes)).unwrap_err();
+        assert_eq!(error.code(), "scene.no-triangles");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_overflowing_transform_is_refused() {
+    let error = Scene::gather(&shown(
+        &TRIANGLE,
+        &[0, 1, 2],
+        &[r#","scale":[1e308,1e308,1e308],"translation":[1e308,0,0]"#],
+    ));
+    assert!(
+        error.is_err_and(|error| ["scene.not-finite", "document.bad-json"].contains(&error.code()))
+    );
+}
+
+/// A small file may show the same bytes so often that the scene would fill the memory.
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_too_large_to_hold_is_refused() {
+    let points = vec![[0.5; 3]; 60_000];
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, &points);
+    let indices = builder.indices(0, Component::U16, &[0, 1, 2]);
+    let mesh = builder.mesh(&[primitive(position, Some(indices), 4)]);
+    for _ in 0..MAX_ELEMENTS / points.len() + 1 {
+        builder.node(&format!(r#"{{"mesh":{mesh}}}"#));
+    }
+    let error = Scene::gather(&read(&builder.build())).unwrap_err();
+    assert_eq!(error.code(), "scene.too-large");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_gallery_is_gathered_whole() {
+    for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
+        let scene = Scene::gather(&read(&gallery(packing))).unwrap();
+        let (knot, planet, skinned, terrain) = (60 * 20, 20 * 30 + 2, 14 * 22 + 2, 21 * 21);
+        assert_eq!(
+            scene.mesh.positions.len(),
+            2 * knot + planet + skinned + terrain
+        );
+        assert_eq!(Edges::new(&scene.mesh).num_components(), 5);
+        assert_eq!(scene.admissible.orbits.len(), knot);
+        let far = scene.mesh.positions.iter().any(|p| p.length() > 12.0);
+        assert!(!far, "a skinned mesh stays where it was modelled");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_plain_glb_comes_back() {
+    let knot = shapes::torus_knot(12, 6);
+    let document = Document::read(&to_glb(&knot), &Default::default()).unwrap();
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.mesh.triangles.len(), knot.triangles.len());
+    let Some(low) = scene.mesh.positions.iter().copied().reduce(DVec3::min) else {
+        panic!("no positions")
+    };
+    let expected = knot.positions.iter().copied().reduce(DVec3::min).unwrap();
+    assert!(low.distance(expected) < 1e-6);
+}

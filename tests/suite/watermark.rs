@@ -1,0 +1,328 @@
+//! The pipelines, from bytes to verdicts.
+
+use crate::support::fixtures::{gallery, key, marked, payload, planet};
+use crate::support::gltf_builder::{Model, Packing};
+use meshmark::mesh::shapes;
+use meshmark::scene::to_glb;
+use meshmark::{
+    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Payload, Stage, Strength, Verdict,
+    demo_model, embed, extract, ignore, inspect, measure, verify,
+};
+use std::ops::ControlFlow;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn measured(model: &[u8]) -> Evidence {
+    measure(model, &Files::new(), &mut ignore).unwrap()
+}
+
+fn read(model: &[u8], reader: u8) -> Extraction {
+    extract(&measured(model), &key(reader))
+}
+
+fn strong() -> EmbedOptions {
+    EmbedOptions {
+        strength: Strength::STRONG,
+        ..EmbedOptions::default()
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn watermark_is_found_by_its_key_and_no_other() {
+    let marked = marked(&demo_model(), &key(1)).unwrap();
+    let found = read(&marked.model, 1);
+    assert_eq!(
+        (found.verdict, found.tag.as_deref()),
+        (Verdict::Found, Some("ADA-1"))
+    );
+    assert_eq!(found.number, Some(payload().number()));
+    assert!(found.ln_p < -500.0 && found.agreement > 0.9, "{found:?}");
+    assert_eq!(
+        found, marked.report.read_back,
+        "the report is what a detector says"
+    );
+    let other = read(&marked.model, 2);
+    assert_eq!(
+        (other.verdict, other.tag, other.number),
+        (Verdict::None, None, None)
+    );
+    assert!(other.sentence.contains("does not prove"));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn watermark_is_not_in_the_unmarked_model() {
+    assert_eq!(read(&demo_model(), 1).verdict, Verdict::None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn watermark_report_is_true() {
+    let host = demo_model();
+    let marked = marked(&host, &key(1)).unwrap();
+    let report = &marked.report;
+    assert_eq!(report.vertices, 12_000);
+    assert!(report.moved_vertices > 6_000 && report.moved_vertices <= 12_000);
+    assert!(report.rms_rel > 0.0 && report.rms_rel <= 0.0004 && report.max_rel <= 0.0016);
+    assert!((report.diagonal - 5.1).abs() < 0.5, "{}", report.diagonal);
+    assert_ne!(report.host_sha256, report.marked_sha256);
+    assert_eq!(
+        report.host_sha256,
+        inspect(&host, &Files::new()).unwrap().sha256
+    );
+    assert_eq!(
+        report.marked_sha256,
+        inspect(&marked.model, &Files::new()).unwrap().sha256
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn watermark_marks_every_kind_of_document() {
+    for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
+        let Model { bytes, files } = gallery(packing);
+        let marked = embed(&bytes, &files, payload(), &key(1), &strong(), &mut ignore).unwrap();
+        assert_eq!(
+            marked.files.len(),
+            usize::from(packing == Packing::External)
+        );
+        let found = extract(
+            &measure(&marked.model, &marked.files, &mut ignore).unwrap(),
+            &key(1),
+        );
+        assert_eq!(
+            (found.verdict, found.tag.as_deref()),
+            (Verdict::Found, Some("ADA-1")),
+            "{packing:?}"
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn watermark_of_another_owner_leaves_the_first() {
+    let first = marked(&demo_model(), &key(1)).unwrap();
+    let options = EmbedOptions::default();
+    let other = Payload::from_tag("BOB").unwrap();
+    let second = embed(
+        &first.model,
+        &Files::new(),
+        other,
+        &key(2),
+        &options,
+        &mut ignore,
+    )
+    .unwrap();
+    let third = embed(
+        &second.model,
+        &Files::new(),
+        other,
+        &key(3),
+        &options,
+        &mut ignore,
+    )
+    .unwrap();
+    let evidence = measured(&third.model);
+    for (reader, tag) in [(1, "ADA-1"), (2, "BOB"), (3, "BOB")] {
+        let found = extract(&evidence, &key(reader));
+        assert_eq!(
+            (found.verdict, found.tag.as_deref()),
+            (Verdict::Found, Some(tag)),
+            "{found:?}"
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn verify_finds_the_expected_payload_and_names_another() {
+    let evidence = measured(&marked(&demo_model(), &key(1)).unwrap().model);
+    let found = verify(&evidence, &key(1), payload());
+    assert_eq!(
+        (found.verdict, found.number),
+        (Verdict::Found, Some(payload().number()))
+    );
+    assert!(
+        found.ln_p < extract(&evidence, &key(1)).ln_p,
+        "a payload that is known need not be guessed"
+    );
+    let other = verify(&evidence, &key(1), Payload::from_tag("ADA-2").unwrap());
+    assert_eq!((other.verdict, other.number), (Verdict::Partial, None));
+    assert!(other.reason.unwrap().contains("ADA-1"));
+    assert_eq!(verify(&evidence, &key(2), payload()).verdict, Verdict::None);
+}
+
+/// A third of the demonstration model's rings: few enough that decoding may fail, and neighbours in payload must not pass.
+#[wasm_bindgen_test(unsupported = test)]
+fn verify_never_takes_one_payload_for_another() {
+    let host = to_glb(&shapes::planet(20, 26));
+    let model = embed(
+        &host,
+        &Files::new(),
+        payload(),
+        &key(1),
+        &strong(),
+        &mut ignore,
+    )
+    .unwrap()
+    .model;
+    let evidence = measured(&model);
+    for flip in 0..Payload::BITS {
+        let neighbour = Payload::from_number(payload().number() ^ 1 << flip).unwrap();
+        assert_ne!(
+            verify(&evidence, &key(1), neighbour).verdict,
+            Verdict::Found,
+            "bit {flip}"
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn verdict_is_cannot_check_where_there_is_too_little() {
+    let tiny = to_glb(&shapes::planet(5, 8));
+    let answer = read(&tiny, 1);
+    assert_eq!(answer.verdict, Verdict::CannotCheck);
+    assert!(answer.reason.unwrap().contains("too few"));
+    let error = marked(&tiny, &key(1)).unwrap_err();
+    assert_eq!(error.code(), "carrier.too-few-addresses");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn embed_returns_nothing_that_it_cannot_read() {
+    let options = EmbedOptions {
+        strength: Strength::new(1e-5).unwrap(),
+        ..EmbedOptions::default()
+    };
+    let host = to_glb(&shapes::planet(18, 24));
+    let error = embed(
+        &host,
+        &Files::new(),
+        payload(),
+        &key(1),
+        &options,
+        &mut ignore,
+    )
+    .unwrap_err();
+    assert!(matches!(error, Error::Unreadable { .. }), "{error}");
+    assert_eq!(error.code(), "watermark.unreadable");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn embed_stops_when_asked_at_any_stage() {
+    let model = to_glb(&planet());
+    let mut stages = Vec::new();
+    let mut listen = |stage: Stage, fraction: f64| {
+        assert!((0.0..=1.0).contains(&fraction));
+        stages.push(stage);
+        ControlFlow::Continue(())
+    };
+    embed(
+        &model,
+        &Files::new(),
+        payload(),
+        &key(1),
+        &EmbedOptions::default(),
+        &mut listen,
+    )
+    .unwrap();
+    let mut order = stages.clone();
+    order.dedup();
+    assert_eq!(
+        order,
+        [
+            Stage::Read,
+            Stage::Embed,
+            Stage::Write,
+            Stage::Read,
+            Stage::Measure,
+            Stage::Test
+        ]
+    );
+    for stop in 0..stages.len() {
+        let mut left = stop;
+        let mut listen = |_: Stage, _: f64| match left.checked_sub(1) {
+            Some(fewer) => {
+                left = fewer;
+                ControlFlow::Continue(())
+            }
+            None => ControlFlow::Break(()),
+        };
+        let error = embed(
+            &model,
+            &Files::new(),
+            payload(),
+            &key(1),
+            &EmbedOptions::default(),
+            &mut listen,
+        );
+        assert_eq!(error.unwrap_err().code(), "aborted", "at report {stop}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn options_out_of_range_are_refused() {
+    for text in ["0", "-1", "0.02", "NaN", "loud", ""] {
+        assert_eq!(
+            text.parse::<Strength>().unwrap_err().code(),
+            "options.strength",
+            "{text:?}"
+        );
+    }
+    assert_eq!("strong".parse::<Strength>().unwrap().rms_rel(), 0.0008);
+    assert_eq!("0.0005".parse::<Strength>().unwrap().rms_rel(), 0.0005);
+    let options = EmbedOptions {
+        carriers: vec![],
+        ..EmbedOptions::default()
+    };
+    let error = embed(
+        &demo_model(),
+        &Files::new(),
+        payload(),
+        &key(1),
+        &options,
+        &mut ignore,
+    )
+    .unwrap_err();
+    assert_eq!(error.code(), "options.no-carrier");
+    assert_eq!(Carrier::from_name("ring"), Some(Carrier::Ring));
+    assert_eq!(Carrier::from_name("rings"), None);
+}
+
+/// Wrong keys against evidence of a marked and of an unmarked model: the tail of ln p inside its bound, none convicted.
+#[wasm_bindgen_test(unsupported = test)]
+fn wrong_keys_find_nothing() {
+    let host = to_glb(&planet());
+    let marked = marked(&host, &key(255)).unwrap().model;
+    let values: Vec<f64> = [&host, &marked]
+        .into_iter()
+        .map(|model| measured(model))
+        .flat_map(|evidence| (0..150).map(move |wrong| extract(&evidence, &key(wrong))))
+        .map(|answer| {
+            assert!(
+                matches!(answer.verdict, Verdict::None | Verdict::CannotCheck),
+                "{answer:?}"
+            );
+            answer.ln_p
+        })
+        .collect();
+    for threshold in [1.0, 2.0, 3.0] {
+        let seen = values.iter().filter(|&&ln_p| ln_p <= -threshold).count() as f64;
+        let allowed = values.len() as f64 * libm::exp(-threshold);
+        assert!(
+            seen <= allowed + 4.0 * allowed.sqrt(),
+            "ln p <= -{threshold}: {seen} against {allowed}"
+        );
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn inspect_describes_the_scene() {
+    let Model { bytes, files } = gallery(Packing::External);
+    let inspection = inspect(&bytes, &files).unwrap();
+    assert_eq!(
+        (inspection.container, inspection.meshes, inspection.nodes),
+        ("gltf", 5, 7)
+    );
+    assert_eq!((inspection.components, inspection.primitives), (5, 5));
+    assert_eq!(
+        (inspection.boundary_edges, inspection.non_manifold_edges),
+        (80, 0)
+    );
+    assert_eq!(inspection.extensions_used, ["KHR_mesh_quantization"]);
+    assert!(inspection.capacity[0].addresses > inspection.capacity[0].needed_addresses);
+    assert_eq!(inspection.bytes, bytes.len());
+}

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use std::error::Error as StdError;
 use std::io::{IsTerminal, Write, stderr};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -150,10 +150,21 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             let options = EmbedOptions { strength, carriers };
             let (model, files) = open(&input)?;
             let marked = embed(&model, &files, payload, &key, &options, &mut clock)?;
-            store(&output, &marked.model)?;
+            let mut outputs = vec![(output.clone(), &marked.model)];
             for (name, bytes) in &marked.files {
-                store(&sibling(&output, name), bytes)?;
+                let buffer = sibling(&output, name)?;
+                if same_file(&buffer, &sibling(&input, name)?) {
+                    let path = buffer.display();
+                    return Err(format!(
+                        "{path} would be overwritten: write the marked model to another folder"
+                    )
+                    .into());
+                }
+                outputs.push((buffer, bytes));
             }
+            outputs
+                .iter()
+                .try_for_each(|(path, bytes)| store(path, bytes))?;
             Ok((report(&marked.report, clock)?, FOUND))
         }
         Command::Extract { input, owner } => {
@@ -278,9 +289,9 @@ fn open(path: &Path) -> Result<(Vec<u8>, Files), Failure> {
     let model = load(path)?;
     let mut files = Files::new();
     loop {
-        match inspect_files(&model, &files) {
+        match missing_file(&model, &files) {
             Some(uri) if !files.contains_key(&uri) => {
-                let bytes = load(&sibling(path, &uri))?;
+                let bytes = load(&sibling(path, &uri)?)?;
                 files.insert(uri, bytes);
             }
             _ => return Ok((model, files)),
@@ -289,15 +300,24 @@ fn open(path: &Path) -> Result<(Vec<u8>, Files), Failure> {
 }
 
 /// The first external buffer that is not among the files.
-fn inspect_files(model: &[u8], files: &Files) -> Option<String> {
+fn missing_file(model: &[u8], files: &Files) -> Option<String> {
     match meshmark::document::Document::read(model, files) {
         Err(DocumentError::MissingFile { uri, .. }) => Some(uri),
         _ => None,
     }
 }
 
-fn sibling(path: &Path, name: &str) -> PathBuf {
-    path.parent().unwrap_or(Path::new("")).join(name)
+/// A file beside another. A model's URIs are a stranger's words: they may not lead out of its folder.
+fn sibling(path: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
+    if !Path::new(name).components().all(inside) {
+        return Err(format!("{name:?} lies outside of the model's folder").into());
+    }
+    Ok(path.parent().unwrap_or(Path::new("")).join(name))
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 fn load(path: &Path) -> Result<Vec<u8>, Failure> {

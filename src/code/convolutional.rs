@@ -83,24 +83,23 @@ impl Trellis {
     }
 
     fn best_paths(&self, list: usize) -> Vec<u64> {
-        let origin = Path {
-            metric: 0.0,
-            state: 0,
-            rank: 0,
-        };
-        let mut reached: Vec<Vec<Path>> = vec![Vec::new(); STATES];
-        reached[0].push(origin);
-        let mut history = Vec::with_capacity(STEPS);
+        let mut layers = vec![Layer::origin(list)];
         for (step, metrics) in self.0.iter().enumerate() {
-            let next = (0..STATES).map(|state| {
+            let reached = &layers[step];
+            let mut next = Layer::empty(list);
+            // Past the message every input is zero: only the lower half of the states can be reached.
+            let num_states = if step < MESSAGE_BITS as usize {
+                STATES
+            } else {
+                STATES / 2
+            };
+            for state in 0..num_states {
                 let input = state >> (MEMORY - 1);
-                if step >= MESSAGE_BITS as usize && input == 1 {
-                    return Vec::new();
-                }
                 let low = (state << 1) & (STATES - 1);
                 let [a, b] = [low, low | 1].map(|from| {
                     let branch = metrics[input << MEMORY | from];
-                    reached[from]
+                    reached
+                        .paths(from)
                         .iter()
                         .enumerate()
                         .map(move |(rank, path)| Path {
@@ -109,38 +108,79 @@ impl Trellis {
                             rank: rank as u16,
                         })
                 });
-                merge(a, b, list)
-            });
-            let next = next.collect();
-            history.push(std::mem::replace(&mut reached, next));
+                next.merge(state, a, b);
+            }
+            layers.push(next);
         }
-        history.push(reached);
-        (0..history[STEPS][0].len())
-            .map(|rank| trace(&history, rank))
+        (0..layers[STEPS].counts[0])
+            .map(|rank| trace(&layers, rank))
             .collect()
     }
 }
 
-/// The best `list` of two sequences that are each in decreasing order of metric; the first wins ties.
-fn merge(a: impl Iterator<Item = Path>, b: impl Iterator<Item = Path>, list: usize) -> Vec<Path> {
-    let (mut a, mut b) = (a.peekable(), b.peekable());
-    let next = || match (a.peek(), b.peek()) {
-        (Some(x), Some(y)) if y.metric > x.metric => b.next(),
-        (Some(_), _) => a.next(),
-        (None, _) => b.next(),
-    };
-    std::iter::from_fn(next).take(list).collect()
+/// The best ways to every state at one time, best first.
+struct Layer {
+    list: usize,
+    paths: Vec<Path>,
+    counts: [usize; STATES],
+}
+
+impl Layer {
+    fn empty(list: usize) -> Layer {
+        let nowhere = Path {
+            metric: 0.0,
+            state: 0,
+            rank: 0,
+        };
+        Layer {
+            list,
+            paths: vec![nowhere; STATES * list],
+            counts: [0; STATES],
+        }
+    }
+
+    /// One way to the state zero.
+    fn origin(list: usize) -> Layer {
+        let mut layer = Layer::empty(list);
+        layer.counts[0] = list.min(1);
+        layer
+    }
+
+    fn paths(&self, state: usize) -> &[Path] {
+        &self.paths[state * self.list..][..self.counts[state]]
+    }
+
+    /// Sets a state's ways to the best of two sequences, each of them best first; the first wins ties.
+    fn merge(
+        &mut self,
+        state: usize,
+        a: impl Iterator<Item = Path>,
+        b: impl Iterator<Item = Path>,
+    ) {
+        let (mut a, mut b) = (a.peekable(), b.peekable());
+        let slots = &mut self.paths[state * self.list..][..self.list];
+        for slot in slots {
+            let best = match (a.peek(), b.peek()) {
+                (Some(x), Some(y)) if y.metric > x.metric => b.next(),
+                (Some(_), _) => a.next(),
+                (None, _) => b.next(),
+            };
+            let Some(best) = best else { break };
+            *slot = best;
+            self.counts[state] += 1;
+        }
+    }
 }
 
 /// The message of one of the ways to the last state: a state's highest bit is the input that led to it.
-fn trace(history: &[Vec<Vec<Path>>], rank: usize) -> u64 {
+fn trace(layers: &[Layer], rank: usize) -> u64 {
     let (mut state, mut rank, mut message) = (0, rank, 0);
     for step in (1..=STEPS).rev() {
         if step <= MESSAGE_BITS as usize {
             let input = (state >> (MEMORY - 1)) as u64;
             message |= input << (MESSAGE_BITS as usize - step);
         }
-        let path = history[step][state][rank];
+        let path = layers[step].paths(state)[rank];
         (state, rank) = (usize::from(path.state), usize::from(path.rank));
     }
     message

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use gltf::json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
-use gltf::json::validation::Checked;
+use gltf::json::accessor::{ComponentType, Type};
 
 use super::buffer::Storage;
+use super::json;
 use super::region::{Region, Slot, View};
 use super::schema::{self, Root};
 use super::{DocumentError, item};
@@ -54,20 +54,14 @@ impl Accessor {
         text: &str,
         views: &[View],
     ) -> Result<Self, DocumentError> {
-        let pointer = || format!("/accessors/{index}");
         let bad = |property: &str, detail: &str| DocumentError::BadAccessor {
             pointer: format!("/accessors/{index}/{property}"),
             detail: detail.into(),
         };
-        let Checked::Valid(GenericComponentType(component)) = accessor.component_type else {
-            return Err(bad("componentType", "the number type is not one of glTF's"));
-        };
-        let Checked::Valid(kind) = accessor.kind else {
-            return Err(bad("type", "the element type is not one of glTF's"));
-        };
+        let (kind, component) = (accessor.kind, accessor.component_type);
         let size = element_size(kind, component);
         let view = |view: u64, property: &str| {
-            let pointer = || format!("/accessors/{index}/{property}");
+            let pointer = format_args!("/accessors/{index}/{property}");
             Ok::<_, DocumentError>(item(views, view, "bufferViews", pointer)?.1)
         };
 
@@ -76,40 +70,41 @@ impl Accessor {
                 accessor.byte_offset,
                 size,
                 accessor.count,
-                pointer,
+                format_args!("/accessors/{index}"),
             )?),
             None => None,
         };
         let sparse = match &accessor.sparse {
             Some(sparse) => {
-                let Checked::Valid(IndexComponentType(index_component)) =
-                    sparse.indices.component_type
-                else {
+                let index_component = sparse.indices.component_type;
+                if !is_index(index_component) {
                     return Err(bad(
                         "sparse/indices/componentType",
                         "the number type cannot be an index",
                     ));
-                };
+                }
                 if sparse.count > accessor.count {
                     return Err(bad(
                         "sparse/count",
                         "more elements are replaced than there are",
                     ));
                 }
-                let at = |part: &str| format!("/accessors/{index}/sparse/{part}");
                 Some(Sparse {
                     indices: view(sparse.indices.buffer_view, "sparse/indices/bufferView")?
                         .packed_elements(
                             sparse.indices.byte_offset,
                             index_component.size(),
                             sparse.count,
-                            || at("indices"),
+                            format_args!("/accessors/{index}/sparse/indices"),
                         )?,
                     index_component,
                     values: view(sparse.values.buffer_view, "sparse/values/bufferView")?
-                        .packed_elements(sparse.values.byte_offset, size, sparse.count, || {
-                            at("values")
-                        })?,
+                        .packed_elements(
+                            sparse.values.byte_offset,
+                            size,
+                            sparse.count,
+                            format_args!("/accessors/{index}/sparse/values"),
+                        )?,
                 })
             }
             None => None,
@@ -131,7 +126,7 @@ impl Accessor {
             count,
             base,
             sparse,
-            bounds: [accessor.min, accessor.max].map(|bound| schema::span(text, bound?.get())),
+            bounds: [accessor.min, accessor.max].map(|bound| json::span(text, bound?.get())),
         })
     }
 
@@ -201,6 +196,14 @@ pub(super) fn bytes_at(storages: &[Storage], slot: Slot, size: usize) -> Option<
         .bytes()
         .get(slot.offset..)?
         .get(..size)
+}
+
+/// Whether numbers of this type can be vertex indices.
+pub(super) fn is_index(component: ComponentType) -> bool {
+    matches!(
+        component,
+        ComponentType::U8 | ComponentType::U16 | ComponentType::U32
+    )
 }
 
 /// A number of an index type, and `None` for other types.

@@ -6,21 +6,19 @@ use serde_json::value::RawValue;
 
 use super::accessor::{Accessor, Format};
 use super::buffer::Storage;
+use super::json;
 use super::region::Slot;
-use super::schema;
+use super::splice::Splice;
 
-/// A range of the JSON text and what replaces it.
-pub(super) type Edit = (Range<usize>, String);
-
-/// The edits that make `min` and `max` of an accessor true, if any of its elements changed. Bounds
-/// are of numbers as they are stored, before normalization (glTF 2.0 specification section 3.6.2.5).
-/// Numbers that are right already keep their spelling, and so do the bounds of data that is not finite.
-pub(super) fn edits(
+/// Makes `min` and `max` of an accessor true, if any of its elements changed. They state numbers as
+/// these are stored, before normalization (glTF 2.0 specification section 3.6.2.5). Numbers that are
+/// right already keep their spelling, and so do the bounds of data that is not finite.
+pub(super) fn correct(
     accessor: &Accessor,
     slots: &[Option<Slot>],
     storages: &[Storage],
-    text: &str,
-) -> Vec<Edit> {
+    splice: &mut Splice,
+) {
     let size = accessor.format.position_size();
     let has_changed = |slot: &Slot| {
         storages
@@ -28,7 +26,7 @@ pub(super) fn edits(
             .is_some_and(|storage| storage.has_changed(slot.offset, size))
     };
     if !slots.iter().flatten().any(has_changed) {
-        return Vec::new();
+        return;
     }
     let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     let [lows, highs] = &mut bounds;
@@ -44,62 +42,40 @@ pub(super) fn edits(
             *high = high.max(component);
         }
     }
-    let mut edits = Vec::new();
     for (span, values) in accessor.bounds.iter().zip(bounds) {
         if let Some(span) = span
             && values.iter().all(|value| value.is_finite())
         {
-            edits.extend(bound_edits(text, span, values, accessor.format));
+            state(values, span.clone(), accessor.format, splice);
         }
     }
-    edits
 }
 
-/// The edits that turn the bound at `span` into `values`.
-fn bound_edits(text: &str, span: &Range<usize>, values: [f64; 3], format: Format) -> Vec<Edit> {
-    let spelling = |value: f64| {
-        if format.is_float() {
-            // The shortest decimal number that is this f32; it is finite.
-            serde_json::to_string(&(value as f32)).unwrap_or_default()
-        } else {
-            (value as i64).to_string()
-        }
-    };
-    let stated = text.get(span.clone()).unwrap_or_default();
-    let Ok(components) = serde_json::from_str::<[&RawValue; 3]>(stated) else {
-        return vec![(
-            span.clone(),
-            format!("[{}]", values.map(spelling).join(",")),
-        )];
-    };
-    let edit = |(component, value): (&RawValue, f64)| {
-        let stated = component.get().parse::<f64>().ok();
-        let is_true = stated.is_some_and(|stated| {
-            if format.is_float() {
-                stated as f32 == value as f32
-            } else {
-                stated == value
-            }
+/// Makes the bound at `span` state `values`.
+fn state(values: [f64; 3], span: Range<usize>, format: Format, splice: &mut Splice) {
+    let stated: Vec<&RawValue> = serde_json::from_str(splice.get(span.clone())).unwrap_or_default();
+    if stated.len() != values.len() {
+        let values = values.map(|value| spelling(value, format));
+        splice.replace(span, format!("[{}]", values.join(",")));
+        return;
+    }
+    for (stated, value) in stated.into_iter().zip(values) {
+        let is_true = serde_json::from_str(stated.get()).is_ok_and(|stated: f64| {
+            stated == value || format.is_float() && stated as f32 == value as f32
         });
-        (!is_true).then_some((schema::span(text, component.get())?, spelling(value)))
-    };
-    components
-        .into_iter()
-        .zip(values)
-        .filter_map(edit)
-        .collect()
+        if let Some(span) = json::span(splice.text, stated.get())
+            && !is_true
+        {
+            splice.replace(span, spelling(value, format));
+        }
+    }
 }
 
-/// The text with the edits made, which do not overlap.
-pub(super) fn splice(text: &str, mut edits: Vec<Edit>) -> String {
-    edits.sort_unstable_by_key(|(range, _)| range.start);
-    let mut output = String::with_capacity(text.len());
-    let mut position = 0;
-    for (range, replacement) in edits {
-        output.push_str(text.get(position..range.start).unwrap_or_default());
-        output.push_str(&replacement);
-        position = range.end;
+/// A stored number as JSON: an integer, or the shortest decimal number that is this f32.
+fn spelling(value: f64, format: Format) -> String {
+    if format.is_float() {
+        format!("{:?}", value as f32)
+    } else {
+        (value as i64).to_string()
     }
-    output.push_str(text.get(position..).unwrap_or_default());
-    output
 }

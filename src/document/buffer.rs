@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::schema::{self, Root};
+use super::json::{self, FromJson, Place};
+use super::schema::Root;
 use super::{DocumentError, Files, data_uri};
 
 /// Where the bytes come from and go back to.
@@ -102,13 +103,19 @@ pub(super) fn resolve(
                 let payload = uri
                     .get()
                     .get(payload)
-                    .and_then(|payload| schema::span(text, payload));
+                    .and_then(|payload| json::span(text, payload));
                 let payload = payload.ok_or_else(|| malformed("its payload cannot be located"))?;
                 storages.push(Storage::new(Origin::DataUri(payload), bytes));
                 storages.len().saturating_sub(1)
             }
             Some(uri) => {
-                let uri: String = schema::parse(uri, pointer)?;
+                let uri = String::from_json(
+                    uri,
+                    Place::Field(
+                        &Place::Item(&Place::Field(&Place::Root, "buffers"), index),
+                        "uri",
+                    ),
+                )?;
                 let decoded = data_uri::percent_decode(&uri);
                 let (key, bytes) = files
                     .get_key_value(&decoded)

@@ -2,6 +2,8 @@
 //!
 //! An extension that is only used, not required, is accepted: the file must make sense without it.
 
+use std::fmt;
+
 use super::DocumentError;
 use super::schema::Root;
 
@@ -47,36 +49,37 @@ const ACCEPTED_PREFIX: &str = "KHR_materials_";
 /// Refuses compressed geometry and required extensions that are not known to be harmless.
 pub(super) fn check(root: &Root) -> Result<(), DocumentError> {
     for (index, name) in root.extensions_required.iter().enumerate() {
-        let pointer = || format!("/extensionsRequired/{index}");
+        let pointer = format_args!("/extensionsRequired/{index}");
         refuse_compression(name, pointer)?;
         if !ACCEPTED.contains(&name.as_str()) && !name.starts_with(ACCEPTED_PREFIX) {
             return Err(DocumentError::ExtensionUnsupported {
-                pointer: pointer(),
+                pointer: pointer.to_string(),
                 name: name.clone(),
             });
         }
     }
     for (index, view) in root.buffer_views.iter().enumerate() {
         for name in view.extensions.keys() {
-            refuse_compression(name, || format!("/bufferViews/{index}/extensions/{name}"))?;
+            refuse_compression(name, format_args!("/bufferViews/{index}/extensions/{name}"))?;
         }
     }
     for (index, mesh) in root.meshes.iter().enumerate() {
         for (part, primitive) in mesh.primitives.iter().enumerate() {
             for name in primitive.extensions.keys() {
-                refuse_compression(name, || {
-                    format!("/meshes/{index}/primitives/{part}/extensions/{name}")
-                })?;
+                refuse_compression(
+                    name,
+                    format_args!("/meshes/{index}/primitives/{part}/extensions/{name}"),
+                )?;
             }
         }
     }
     Ok(())
 }
 
-fn refuse_compression(name: &str, pointer: impl Fn() -> String) -> Result<(), DocumentError> {
+fn refuse_compression(name: &str, pointer: fmt::Arguments) -> Result<(), DocumentError> {
     if COMPRESSION.contains(&name) {
         return Err(DocumentError::CompressionUnsupported {
-            pointer: pointer(),
+            pointer: pointer.to_string(),
             name: name.to_owned(),
         });
     }

@@ -2,10 +2,10 @@
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::Mode;
-use gltf::json::validation::Checked;
 
-use super::accessor::{Accessor, bytes_at, unsigned};
+use super::accessor::{Accessor, bytes_at, is_index, unsigned};
 use super::buffer::Storage;
+use super::json::escaped;
 use super::schema::{self, Root};
 use super::{DocumentError, item};
 
@@ -55,25 +55,22 @@ fn read_primitive(
     pointer: &str,
 ) -> Result<Primitive, DocumentError> {
     let accessor = |index: u64, property: &str| {
-        item(accessors, index, "accessors", || {
-            format!("{pointer}/{property}")
-        })
+        item(
+            accessors,
+            index,
+            "accessors",
+            format_args!("{pointer}/{property}"),
+        )
         .map(|(_, accessor)| accessor)
-    };
-    let Checked::Valid(mode) = primitive.mode else {
-        return Err(DocumentError::BadJson {
-            detail: "the primitive mode is not one of glTF's".into(),
-            pointer: Some(format!("{pointer}/mode")),
-        });
     };
     for (target, attributes) in primitive.targets.iter().enumerate() {
         for (name, &index) in attributes {
-            accessor(index, &format!("targets/{target}/{name}"))?;
+            accessor(index, &format!("targets/{target}/{}", escaped(name)))?;
         }
     }
     let mut position = None;
     for (name, &index) in &primitive.attributes {
-        let accessor = accessor(index, &format!("attributes/{name}"))?;
+        let accessor = accessor(index, &format!("attributes/{}", escaped(name)))?;
         if name == "POSITION" {
             check_position(accessor)?;
             position = Some(accessor.index);
@@ -89,7 +86,7 @@ fn read_primitive(
     };
     Ok(Primitive {
         position,
-        mode,
+        mode: primitive.mode,
         indices,
         has_morph_targets: !primitive.targets.is_empty(),
     })
@@ -107,11 +104,7 @@ fn check_position(accessor: &Accessor) -> Result<(), DocumentError> {
 }
 
 fn check_indices(accessor: &Accessor) -> Result<(), DocumentError> {
-    let is_index = matches!(
-        accessor.format.component,
-        ComponentType::U8 | ComponentType::U16 | ComponentType::U32
-    );
-    if accessor.kind != Type::Scalar || !is_index {
+    if accessor.kind != Type::Scalar || !is_index(accessor.format.component) {
         return Err(DocumentError::BadAccessor {
             pointer: accessor.pointer(),
             detail: "vertex indices must be unsigned integers".into(),

@@ -30,19 +30,23 @@ mod container;
 mod data_uri;
 mod error;
 mod extension;
+mod json;
 mod mesh;
 mod node;
 mod region;
 mod schema;
 mod sharing;
+mod splice;
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use self::accessor::Accessor;
 use self::buffer::{Origin, Storage};
 use self::region::{Region, View};
 use self::schema::Root;
 use self::sharing::Sharing;
+use self::splice::Splice;
 
 pub use self::container::Container;
 pub use self::error::DocumentError;
@@ -141,7 +145,7 @@ impl Document {
         let changed: Vec<Option<&[u8]>> = self.storages.iter().map(Storage::changed).collect();
         let has_changed =
             |region: &Region| changed.get(region.storage).is_some_and(Option::is_some);
-        let mut edits = Vec::new();
+        let mut splice = Splice::new(&self.text);
         for accessor in self
             .accessors
             .iter()
@@ -149,7 +153,7 @@ impl Document {
         {
             if accessor.regions().any(has_changed) {
                 let slots = accessor.slots(&self.storages)?;
-                edits.extend(bounds::edits(accessor, &slots, &self.storages, &self.text));
+                bounds::correct(accessor, &slots, &self.storages, &mut splice);
             }
         }
         let mut files = Files::new();
@@ -158,11 +162,9 @@ impl Document {
             match (&storage.origin, changed) {
                 (Origin::Chunk, _) => binary = Some(storage.bytes()),
                 (Origin::DataUri(payload), Some(bytes)) => {
-                    let old = self.text.get(payload.clone()).unwrap_or_default();
-                    edits.push((
-                        payload.clone(),
-                        data_uri::replace(old, &storage.original, bytes),
-                    ));
+                    let old = splice.get(payload.clone());
+                    let new = data_uri::replace(old, &storage.original, bytes);
+                    splice.replace(payload.clone(), new);
                 }
                 (Origin::File(name), Some(bytes)) => {
                     files.insert(name.clone(), bytes.to_vec());
@@ -170,7 +172,7 @@ impl Document {
                 (_, None) => {}
             }
         }
-        let mut text = bounds::splice(&self.text, edits);
+        let mut text = splice.finish();
         if self.container == Container::Glb && text.len() != self.text.len() {
             container::pad(&mut text);
         }
@@ -402,15 +404,18 @@ fn check_references(
 ) -> Result<(), DocumentError> {
     for (index, image) in root.images.iter().enumerate() {
         if let Some(view) = image.buffer_view {
-            item(views, view, "bufferViews", || {
-                format!("/images/{index}/bufferView")
-            })?;
+            item(
+                views,
+                view,
+                "bufferViews",
+                format_args!("/images/{index}/bufferView"),
+            )?;
         }
     }
     for (index, animation) in root.animations.iter().enumerate() {
         for (place, sampler) in animation.samplers.iter().enumerate() {
             for (accessor, end) in [(sampler.input, "input"), (sampler.output, "output")] {
-                let pointer = || format!("/animations/{index}/samplers/{place}/{end}");
+                let pointer = format_args!("/animations/{index}/samplers/{place}/{end}");
                 item(accessors, accessor, "accessors", pointer)?;
             }
         }
@@ -423,12 +428,12 @@ fn item<'a, T>(
     list: &'a [T],
     index: u64,
     name: &'static str,
-    pointer: impl Fn() -> String,
+    pointer: fmt::Arguments,
 ) -> Result<(usize, &'a T), DocumentError> {
     let position = usize::try_from(index).ok();
     let item = position.and_then(|position| Some((position, list.get(position)?)));
     item.ok_or_else(|| DocumentError::BadIndex {
-        pointer: pointer(),
+        pointer: pointer.to_string(),
         list: name,
         index,
         count: list.len(),

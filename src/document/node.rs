@@ -42,47 +42,60 @@ pub(super) fn read(root: &Root) -> Result<(Vec<Node>, Vec<usize>), DocumentError
     let orphans = parentless(&nodes)?;
     check_acyclic(&nodes, &orphans)?;
 
-    let mut roots = Vec::new();
+    let mut is_root = vec![false; nodes.len()];
     for (index, scene) in root.scenes.iter().enumerate() {
         for (place, &node) in scene.nodes.iter().enumerate() {
-            let pointer = || format!("/scenes/{index}/nodes/{place}");
+            let pointer = format_args!("/scenes/{index}/nodes/{place}");
             let (node, _) = item(&nodes, node, "nodes", pointer)?;
             if orphans.binary_search(&node).is_err() {
                 return Err(DocumentError::NotARoot {
-                    pointer: pointer(),
+                    pointer: pointer.to_string(),
                     node,
                 });
             }
-            roots.push(node);
+            is_root
+                .get_mut(node)
+                .into_iter()
+                .for_each(|flag| *flag = true);
         }
     }
-    roots.sort_unstable();
-    roots.dedup();
-    Ok((
-        nodes,
-        if root.scenes.is_empty() {
-            orphans
-        } else {
-            roots
-        },
-    ))
+    let roots = if root.scenes.is_empty() {
+        orphans
+    } else {
+        places(&is_root, true)
+    };
+    Ok((nodes, roots))
+}
+
+/// Where a list of flags has this value.
+fn places(flags: &[bool], value: bool) -> Vec<usize> {
+    let flags = flags.iter().enumerate();
+    flags
+        .filter_map(|(place, flag)| (*flag == value).then_some(place))
+        .collect()
 }
 
 fn read_node(root: &Root, index: usize, node: &schema::Node) -> Result<Node, DocumentError> {
     let children = node.children.iter().enumerate().map(|(place, &child)| {
-        let pointer = || format!("/nodes/{index}/children/{place}");
+        let pointer = format_args!("/nodes/{index}/children/{place}");
         Ok(item(&root.nodes, child, "nodes", pointer)?.0)
     });
     let children = children.collect::<Result<_, DocumentError>>()?;
     let mesh = node.mesh.map(|mesh| {
-        item(&root.meshes, mesh, "meshes", || {
-            format!("/nodes/{index}/mesh")
-        })
+        item(
+            &root.meshes,
+            mesh,
+            "meshes",
+            format_args!("/nodes/{index}/mesh"),
+        )
     });
     let skin = node.skin.map(|skin| {
-        item(&root.skins, skin, "skins", || {
-            format!("/nodes/{index}/skin")
-        })
+        item(
+            &root.skins,
+            skin,
+            "skins",
+            format_args!("/nodes/{index}/skin"),
+        )
     });
     Ok(Node {
         transform: match node.matrix {
@@ -115,10 +128,7 @@ fn parentless(nodes: &[Node]) -> Result<Vec<usize>, DocumentError> {
             }
         }
     }
-    let parents = has_parent.into_iter().enumerate();
-    Ok(parents
-        .filter_map(|(node, has_parent)| (!has_parent).then_some(node))
-        .collect())
+    Ok(places(&has_parent, false))
 }
 
 /// With at most one parent each, the nodes on loops and below them are those no root leads to.

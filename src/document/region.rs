@@ -1,8 +1,10 @@
 //! Runs of equally spaced elements in the bytes of a document: buffer views, and accessors in them.
 
-use super::DocumentError;
+use std::fmt;
+
 use super::buffer::Buffer;
-use super::schema::Root;
+use super::schema::{BufferView, Root};
+use super::{DocumentError, item};
 
 /// The bytes of one element. Equal slots are the same bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,15 +35,17 @@ pub(super) struct View {
 
 /// The buffer views of the file.
 pub(super) fn views(root: &Root, buffers: &[Buffer]) -> Result<Vec<View>, DocumentError> {
-    let view = |(index, view): (usize, &super::schema::BufferView)| {
-        let pointer = || format!("/bufferViews/{index}");
-        let (_, buffer) = super::item(buffers, view.buffer, "buffers", || {
-            format!("{}/buffer", pointer())
-        })?;
+    let view = |(index, view): (usize, &BufferView)| {
+        let (_, buffer) = item(
+            buffers,
+            view.buffer,
+            "buffers",
+            format_args!("/bufferViews/{index}/buffer"),
+        )?;
         let end = view.byte_offset.saturating_add(view.byte_length);
         if end > buffer.length {
             return Err(DocumentError::OutOfBounds {
-                pointer: pointer(),
+                pointer: format!("/bufferViews/{index}"),
                 needed: end,
                 available: buffer.length,
             });
@@ -75,12 +79,12 @@ impl View {
         offset: u64,
         size: usize,
         count: u64,
-        pointer: impl Fn() -> String,
+        pointer: fmt::Arguments,
     ) -> Result<Region, DocumentError> {
         let stride = self.stride.unwrap_or(size as u64);
         if stride < size as u64 {
             return Err(DocumentError::BadAccessor {
-                pointer: pointer(),
+                pointer: pointer.to_string(),
                 detail: format!(
                     "its elements have {size} bytes, but follow each other every {stride} bytes"
                 ),
@@ -94,7 +98,7 @@ impl View {
             None => offset,
         };
         let out_of_bounds = || DocumentError::OutOfBounds {
-            pointer: pointer(),
+            pointer: pointer.to_string(),
             needed,
             available: self.length,
         };
@@ -111,9 +115,7 @@ impl View {
             count: in_memory(count)?,
         })
     }
-}
 
-impl View {
     /// Like [`elements`](Self::elements) for data that has to be tightly packed: readers differ in
     /// whether they heed a stride that should not be there.
     pub fn packed_elements(
@@ -121,11 +123,11 @@ impl View {
         offset: u64,
         size: usize,
         count: u64,
-        pointer: impl Fn() -> String,
+        pointer: fmt::Arguments,
     ) -> Result<Region, DocumentError> {
         match self.stride {
             Some(stride) if stride != size as u64 => Err(DocumentError::BadAccessor {
-                pointer: pointer(),
+                pointer: pointer.to_string(),
                 detail: format!(
                     "its buffer view has a byte stride of {stride}, but sparse data is tightly packed"
                 ),

@@ -52,12 +52,8 @@ impl Sharing {
             mark(&mut has_other_use, sampler.input);
             mark(&mut has_other_use, sampler.output);
         }
-        let instancing = root
-            .nodes
-            .iter()
-            .filter_map(|node| node.extensions.instancing.as_ref());
-        for accessor in instancing.flat_map(|instancing| instancing.attributes.values()) {
-            mark(&mut has_other_use, *accessor);
+        for &accessor in root.nodes.iter().flat_map(|node| node.instances.values()) {
+            mark(&mut has_other_use, accessor);
         }
 
         let mut uses: Vec<(Region, Option<Format>)> = Vec::new();

@@ -6,7 +6,6 @@ use argon2::{Algorithm, Argon2, Params, Version};
 use hkdf::Hkdf;
 use sha2::{Digest, Sha256};
 use siphasher::sip128::SipHasher24;
-use unicode_normalization::UnicodeNormalization;
 use zeroize::{Zeroize, ZeroizeOnDrop, Zeroizing};
 
 /// Argon2id's parameters: OWASP Password Storage Cheat Sheet, the first of its equivalent recommendations for
@@ -75,8 +74,7 @@ impl Key {
     /// Both are brought to Unicode NFKC first, and white space around the name is dropped, so that the same words typed
     /// on another keyboard give the same key. Upper and lower case are different. Takes tenths of a second, by design.
     pub fn from_passphrase(owner: &str, passphrase: &str) -> Result<Key, KeyError> {
-        let owner: String = owner.nfkc().collect();
-        let passphrase = Zeroizing::new(passphrase.nfkc().collect::<String>());
+        let (owner, passphrase) = (nfkc(owner), nfkc(passphrase));
         if owner.trim().is_empty() {
             return Err(KeyError::EmptyOwner);
         }
@@ -112,6 +110,20 @@ impl Key {
             .expect("16 bytes are fewer than HKDF's limit of 255 hashes");
         Prf(sub_key)
     }
+}
+
+/// Unicode normalization form KC.
+#[cfg(not(target_arch = "wasm32"))]
+fn nfkc(text: &str) -> Zeroizing<String> {
+    use unicode_normalization::UnicodeNormalization;
+    Zeroizing::new(text.nfkc().collect())
+}
+
+/// In wasm the JavaScript engine's own tables normalize, before the text gets here (see `src/wasm`): a second copy of them
+/// would be a quarter of the module.
+#[cfg(target_arch = "wasm32")]
+fn nfkc(text: &str) -> Zeroizing<String> {
+    Zeroizing::new(text.to_owned())
 }
 
 /// A keyed pseudo-random function from a 64-bit address to 128 bits: SipHash-2-4-128 (Aumasson and Bernstein 2012).

@@ -5,19 +5,21 @@
 
 use crate::watermark::{self, Error, Strength};
 use crate::{Carrier, EmbedOptions, Evidence, Files, Key, Payload, Progress, Stage};
-use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, Function, JsString, Object, Reflect, Uint8Array};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use wasm_bindgen::prelude::*;
 use web_sys::AbortSignal;
+use zeroize::Zeroizing;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = include_str!("types.d.ts");
 
-/// 32 bytes from an owner's name and passphrase.
+/// 32 bytes from an owner's name and passphrase, which the engine brings to Unicode NFKC on the way.
 #[wasm_bindgen(js_name = deriveKey, skip_typescript)]
-pub fn derive_key(owner: &str, passphrase: &str) -> Result<Vec<u8>, JsValue> {
-    let key = Key::from_passphrase(owner, passphrase)
+pub fn derive_key(owner: JsString, passphrase: JsString) -> Result<Vec<u8>, JsValue> {
+    let nfkc = |text: JsString| Zeroizing::new(String::from(text.normalize("NFKC")));
+    let key = Key::from_passphrase(&nfkc(owner), &nfkc(passphrase))
         .map_err(Error::from)
         .map_err(thrown)?;
     Ok(key.to_bytes().to_vec())

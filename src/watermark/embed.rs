@@ -41,7 +41,7 @@ pub fn embed(
     step(progress, Stage::Read, 0.0)?;
     let mut document = Document::read(model, files)?;
     let scene = Scene::gather(&document)?;
-    step(progress, Stage::Read, 1.0)?;
+    step(progress, Stage::Embed, 0.0)?;
 
     let codeword = Codeword::new(Checked::new(key).message(payload));
     let mark = Mark {

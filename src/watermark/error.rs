@@ -41,7 +41,8 @@ pub enum Error {
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
         "the mark could not be read back from the marked model (ln p = {ln_p:.1}, which had to be below -20.7), so nothing \
-         was written; the model has {addresses} distinct neighbourhoods to carry it: try a greater strength"
+         was returned: the model has {addresses} distinct neighbourhoods, of which a key owns a quarter; a greater \
+         strength or another key may do"
     )]
     Unreadable {
         /// The bound that was reached.

@@ -147,13 +147,24 @@ impl Reader {
     /// The likeliest payload whose check bits hold, if it stands out from what noise would give.
     fn decode(&self, hypothesis: &Hypothesis, charge: f64) -> Option<Candidate> {
         let symbols = &hypothesis.symbols;
-        let messages = decode(symbols, LIST).into_iter();
-        let (payload, codeword) = messages
-            .filter_map(|m| Some((self.check.payload(m)?, Codeword::new(m))))
-            .next()?;
-        let all = against(symbols, |symbol| codeword.sign(symbol));
-        let guessed = all.ln_p() + f64::from(Payload::BITS) * LN_2;
-        (union(guessed, charge) <= LN_P_TRACE).then(|| Candidate {
+        let guess = f64::from(Payload::BITS) * LN_2;
+        let statistic = |message| {
+            let codeword = Codeword::new(message);
+            against(symbols, |symbol| codeword.sign(symbol))
+        };
+        let stands_out = |all: &Statistic| union(all.ln_p() + guess, charge) <= LN_P_TRACE;
+        // The likeliest message is mostly the right one, and where it does not stand out, none does.
+        let likeliest = decode(symbols, 1);
+        if !likeliest
+            .iter()
+            .any(|&message| stands_out(&statistic(message)))
+        {
+            return None;
+        }
+        let valid = |message: u64| Some((self.check.payload(message)?, statistic(message)));
+        let first = likeliest.into_iter().find_map(valid);
+        let (payload, all) = first.or_else(|| decode(symbols, LIST).into_iter().find_map(valid))?;
+        stands_out(&all).then(|| Candidate {
             payload,
             all,
             ln_p: all.ln_p() + self.ln_guesses(),

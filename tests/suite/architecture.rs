@@ -43,18 +43,13 @@ const MAY_USE: [(&str, &[&str]); 18] = [
 ];
 
 /// Crates that only some rooms may use.
-const ONLY_IN: [(&[&str], &[&str]); 5] = [
+const ONLY_IN: [(&[&str], &[&str]); 6] = [
     (&["gltf", "serde_json", "base64"], &["document", "bin"]),
     (
-        &[
-            "argon2",
-            "hkdf",
-            "siphasher",
-            "zeroize",
-            "unicode_normalization",
-        ],
+        &["argon2", "hkdf", "siphasher", "unicode_normalization"],
         &["key"],
     ),
+    (&["zeroize"], &["key", "wasm"]),
     (&["sha2"], &["key", "digest"]),
     (
         &["wasm_bindgen", "js_sys", "web_sys", "serde_wasm_bindgen"],

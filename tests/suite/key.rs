@@ -66,7 +66,9 @@ fn key_siphash_2_4_128_as_in_its_reference_code() {
     assert_eq!(hash(&[0]), "da87c1d86b99af44347659119b22fc45");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+/// In wasm it is the JavaScript engine that normalizes, on the way in: the package's tests hold it to the same.
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
 fn key_is_the_same_however_the_words_are_typed() {
     let composed = Key::from_passphrase("Zo\u{eb}", "caf\u{e9} \u{ff11}").unwrap();
     let decomposed = Key::from_passphrase(" Zoe\u{308} ", "cafe\u{301} 1").unwrap();

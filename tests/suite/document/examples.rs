@@ -143,6 +143,13 @@ fn values_that_are_equal_keep_their_bytes() {
         .expect("equal positions");
     assert_eq!(document.write().expect("a written document"), before);
 
+    document
+        .set_positions(0, &[[-1.0, 0.51, 0.0]])
+        .expect("a movable position");
+    let written = document.write().expect("a written document").model;
+    let raw = Oracle::read_parts(&written, &Files::new()).raw(0);
+    assert_eq!(raw, [[-128.0, 65.0, 0.0]]);
+
     let mut document = stored_as(Component::F32, false, &[[-0.0, 1.0, 2.0]]);
     let before = document.write().expect("a written document");
     document
@@ -260,12 +267,15 @@ fn a_corner_must_be_a_vertex() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn bounds_keep_their_spelling_where_they_stay_true() {
-    let mut builder = triangle(Packing::DataUri);
+    let mut builder = GltfBuilder::new(Packing::DataUri);
+    let points = [[0.0; 3], [0.1, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let touched = builder.positions(0, Layout::F32, &points);
+    builder.mesh(&[primitive(touched, None, 4)]);
     let untouched = builder.positions(0, Layout::F32, &TRIANGLE);
     builder.mesh(&[primitive(untouched, None, 4)]);
     builder.accessors[0] = builder.accessors[0]
         .replace(r#""min":[0,0,0]"#, r#""min" : [ 0.0, -0e5 ,0]"#)
-        .replace(r#""max":[1,1,0]"#, r#""max":[1.00,10e-1,-7]"#);
+        .replace(r#""max":[0.1,1,0]"#, r#""max":[1e-1,10e-1,-7]"#);
     builder.accessors[1] =
         builder.accessors[1].replace(r#""max":[1,1,0]"#, r#""max":["what",null]"#);
     let before = builder.json();
@@ -274,7 +284,7 @@ fn bounds_keep_their_spelling_where_they_stay_true() {
     let after = text(&document);
     let expected = before
         .replace("[ 0.0, -0e5 ,0]", "[ 0.0, -0.1 ,0]")
-        .replace("[1.00,10e-1,-7]", "[1.00,10e-1,0.0]");
+        .replace("[1e-1,10e-1,-7]", "[1e-1,10e-1,0.0]");
     let cut = |text: &str| text[text.find(r#""bufferViews""#).expect("views")..].to_owned();
     assert_eq!(cut(&after), cut(&expected));
     assert!(after.contains(r#"["what",null]"#));
@@ -439,6 +449,54 @@ fn positions_fixed_in_part_can_move_elsewhere() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn strided_data_fixes_the_positions_it_touches() {
+    let mut builder = triangle(Packing::Glb);
+    // Bytes 4 to 7 and 20 to 23, where positions are 0 to 11, 12 to 23 and 24 to 35.
+    let view = builder.view(0, 4, 20, Some(16));
+    builder.accessor(format!(
+        r#"{{"bufferView":{view},"componentType":5126,"count":2,"type":"SCALAR"}}"#
+    ));
+    assert_eq!(
+        read(&builder).fixed_elements(0),
+        Ok(vec![true, true, false])
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn long_data_fixes_positions_behind_shorter_data() {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let offset = builder.push(0, &[0; 100]);
+    let before = builder.view(0, offset, 136, None);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    builder.mesh(&[primitive(position, None, 4)]);
+    builder.accessor(format!(
+        r#"{{"bufferView":{before},"componentType":5121,"count":136,"type":"SCALAR"}}"#
+    ));
+    for start in 1..9 {
+        builder.accessor(format!(
+            r#"{{"bufferView":{before},"byteOffset":{start},"componentType":5121,"count":1,"type":"SCALAR"}}"#
+        ));
+    }
+    assert!(!read(&builder).is_writable(position));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn sparse_indices_are_not_positions() {
+    let mut builder = triangle(Packing::Glb);
+    let sparse = builder.accessor(
+        r#"{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,
+            "indices":{"bufferView":0,"componentType":5125},
+            "values":{"bufferView":0,"byteOffset":24}}}"#
+            .into(),
+    );
+    builder.mesh(&[primitive(sparse, None, 4)]);
+    assert_eq!(
+        read(&builder).fixed_elements(0),
+        Ok(vec![true, false, false])
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn positions_that_overlap_in_part_or_in_another_format_stay() {
     let mut builder = triangle(Packing::Glb);
     let shifted = builder.positions_at(0, 4, Layout::F32, &TRIANGLE[..2]);
@@ -514,17 +572,21 @@ fn the_base_under_a_sparse_value_is_not_touched() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn data_uris_are_edited_in_place_however_they_are_spelled() {
-    let builder = triangle(Packing::DataUri);
+    let mut builder = triangle(Packing::DataUri);
+    builder.push(0, &[1]);
     let plain = builder.json();
     let respelled = |text: &str| {
         let (start, rest) = text.split_once(";base64,").expect("a payload");
         let (payload, end) = rest.split_once('"').expect("the string's end");
-        // The first `A` is a percent escape, the second a JSON escape; padding is left away.
+        // Escapes of both kinds, also beside symbols that will change; no padding; unused bits set.
         let payload = payload
             .trim_end_matches('=')
-            .replacen('A', "%41", 1)
-            .replacen('A', r"\u0041", 1);
-        format!(r#"{start};CHARSET=x;BASE64,{payload}"{end}"#)
+            .replace("D8A", r"\u00448%41")
+            .replacen('A', "%41", 1);
+        let payload = payload
+            .strip_suffix('Q')
+            .expect("the symbol of the last byte");
+        format!(r#"{start};CHARSET=x;BASE64,{payload}R"{end}"#)
     };
     let model = respelled(&plain);
     let mut document =

@@ -1,0 +1,242 @@
+//! The command line, as scripts use it.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A folder of its own for one test, gone with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("meshmark-cli-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        fs::write(path.join("secret.txt"), "correct horse\n").unwrap();
+        fs::write(path.join("other.txt"), "battery staple").unwrap();
+        fs::write(path.join("model.glb"), meshmark::demo_model()).unwrap();
+        Folder(path)
+    }
+
+    /// Runs `meshmark` here: exit code, report, what was said on stderr.
+    fn run(&self, arguments: &str) -> (i32, Value, String) {
+        self.run_with(arguments, None)
+    }
+
+    fn run_with(&self, arguments: &str, passphrase: Option<&str>) -> (i32, Value, String) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+        command
+            .args(arguments.split_whitespace())
+            .current_dir(&self.0)
+            .stdin(Stdio::null());
+        command.env_remove("MESHMARK_PASSPHRASE");
+        if let Some(passphrase) = passphrase {
+            command.env("MESHMARK_PASSPHRASE", passphrase);
+        }
+        let output = command.output().unwrap();
+        let report = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
+        (
+            output.status.code().unwrap(),
+            report,
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        fs::remove_dir_all(&self.0).unwrap();
+    }
+}
+
+const ADA: &str = "--owner Ada --passphrase-file secret.txt";
+
+#[test]
+fn cli_embeds_and_extracts() {
+    let here = Folder::new("roundtrip");
+    let (code, report, _) = here.run(&format!("embed model.glb marked.glb {ADA} --tag ADA-1"));
+    assert_eq!(code, 0);
+    assert_eq!(report["tag"], "ADA-1");
+    assert_eq!(report["vertices"], 12_000);
+    assert_eq!(report["read_back"]["verdict"], "found");
+    for stage in ["read", "embed", "write", "measure", "test"] {
+        assert!(
+            report["ms"][stage].is_number(),
+            "{stage} is timed: {report}"
+        );
+    }
+    let (code, report, _) = here.run(&format!("extract marked.glb {ADA}"));
+    assert_eq!(
+        (code, &report["verdict"], &report["tag"]),
+        (0, &"found".into(), &"ADA-1".into())
+    );
+    assert!(report["ln_p"].as_f64().unwrap() < -100.0);
+    assert_eq!(report["carriers"][0]["name"], "ring");
+    assert_eq!(report["carriers"][0]["tag"], "ADA-1");
+    assert!(
+        ["read", "measure", "test"]
+            .iter()
+            .all(|stage| report["ms"][stage].is_number()),
+        "{report}"
+    );
+
+    let (code, report, _) = here.run("extract marked.glb --owner Ada --passphrase-file other.txt");
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+    let (code, report, _) = here.run(&format!("verify marked.glb {ADA} --tag ADA-1"));
+    assert_eq!((code, &report["verdict"]), (0, &"found".into()));
+    let (code, report, _) = here.run(&format!("verify marked.glb {ADA} --number 7"));
+    assert_eq!((code, &report["verdict"]), (1, &"partial".into()));
+}
+
+#[test]
+fn cli_measures_once_and_reads_the_evidence() {
+    let here = Folder::new("evidence");
+    here.run(&format!(
+        "embed model.glb marked.glb {ADA} --number 42 --strength strong --carriers ring"
+    ));
+    let (code, report, _) = here.run("measure marked.glb marked.mmev");
+    assert_eq!(code, 0);
+    assert_eq!(
+        report["bytes"].as_u64().unwrap(),
+        fs::metadata(here.path("marked.mmev")).unwrap().len()
+    );
+    let (code, report, _) = here.run(&format!("extract marked.mmev {ADA}"));
+    assert_eq!((code, &report["number"]), (0, &42.into()));
+}
+
+#[test]
+fn cli_takes_the_secret_from_the_environment_or_a_key_file() {
+    let here = Folder::new("secret");
+    fs::write(here.path("key"), [5; 32]).unwrap();
+    here.run(&format!("embed model.glb marked.glb {ADA} --tag X"));
+    let (code, ..) = here.run_with("extract marked.glb --owner Ada", Some("correct horse"));
+    assert_eq!(code, 0);
+    let (code, report, _) = here.run("extract marked.glb --key-file key");
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+    fs::write(here.path("key"), [5; 31]).unwrap();
+    let (code, report, _) = here.run("extract marked.glb --key-file key");
+    assert_eq!((code, &report["error"]["code"]), (2, &"key.length".into()));
+}
+
+#[test]
+fn cli_reads_and_writes_external_buffers() {
+    let here = Folder::new("external");
+    let glb = meshmark::demo_model();
+    let json_length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let json = String::from_utf8(glb[20..20 + json_length].to_vec()).unwrap();
+    let json = json.replace(
+        r#""buffers":[{"#,
+        r#""buffers":[{"uri":"model%20data.bin","#,
+    );
+    fs::write(here.path("model.gltf"), json).unwrap();
+    fs::write(here.path("model data.bin"), &glb[20 + json_length + 8..]).unwrap();
+    fs::create_dir(here.path("out")).unwrap();
+    let (code, report, said) = here.run(&format!(
+        "embed model.gltf out/model.gltf {ADA} --tag ADA-1"
+    ));
+    assert_eq!(code, 0, "{report} {said}");
+    let (code, ..) = here.run(&format!("extract out/model.gltf {ADA}"));
+    assert_eq!(code, 0);
+    fs::remove_file(here.path("out/model data.bin")).unwrap();
+    let (code, report, said) = here.run(&format!("extract out/model.gltf {ADA}"));
+    assert_eq!((code, &report["verdict"]), (2, &"cannot-check".into()));
+    assert!(said.contains("model data.bin"), "{said}");
+}
+
+#[test]
+fn cli_never_overwrites_the_host_nor_leaves_its_folder() {
+    let here = Folder::new("overwrite");
+    let uri = |uri: &str| {
+        let glb = meshmark::demo_model();
+        let json_length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        let json = String::from_utf8(glb[20..20 + json_length].to_vec()).unwrap();
+        let member = format!(r#""buffers":[{{"uri":"{uri}","#);
+        fs::write(
+            here.path("model.gltf"),
+            json.replace(r#""buffers":[{"#, &member),
+        )
+        .unwrap();
+        fs::write(here.path("model.bin"), &glb[20 + json_length + 8..]).unwrap();
+    };
+    uri("model.bin");
+    let before = fs::read(here.path("model.bin")).unwrap();
+    let (code, _, said) = here.run(&format!("embed model.gltf marked.gltf {ADA} --tag A"));
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("overwritten"), "{said}");
+    assert_eq!(fs::read(here.path("model.bin")).unwrap(), before);
+    uri("../model.bin");
+    let (code, _, said) = here.run(&format!("embed model.gltf marked.gltf {ADA} --tag A"));
+    assert_eq!(code, 2);
+    assert!(said.contains("outside"), "{said}");
+}
+
+#[test]
+fn cli_inspects() {
+    let here = Folder::new("inspect");
+    let (code, report, _) = here.run("inspect model.glb");
+    assert_eq!(
+        (code, &report["triangles"], &report["container"]),
+        (0, &24_000.into(), &"glb".into())
+    );
+    assert!(
+        report["capacity"][0]["addresses"].as_u64()
+            > report["capacity"][0]["needed_addresses"].as_u64()
+    );
+}
+
+#[test]
+fn cli_says_what_is_wrong_and_writes_nothing() {
+    let here = Folder::new("errors");
+    fs::write(here.path("short.glb"), &meshmark::demo_model()[..5000]).unwrap();
+    for (arguments, code) in [
+        (
+            format!("embed short.glb out.glb {ADA} --tag A"),
+            "document.truncated",
+        ),
+        (
+            format!("embed model.glb out.glb {ADA} --tag too-long-a-tag"),
+            "payload.length",
+        ),
+        (format!("embed nowhere.glb out.glb {ADA} --tag A"), "io"),
+        (
+            format!("embed secret.txt out.glb {ADA} --tag A"),
+            "document.bad-container",
+        ),
+        (
+            "extract model.glb --owner Ada --passphrase-file nowhere.txt".to_owned(),
+            "io",
+        ),
+    ] {
+        let (exit, report, said) = here.run(&arguments);
+        assert_eq!(
+            (exit, &report["error"]["code"]),
+            (2, &code.into()),
+            "{arguments}: {report}"
+        );
+        assert!(said.starts_with("meshmark: "), "{said}");
+        assert!(!said.contains("correct horse"));
+    }
+    assert!(!Path::new(&here.path("out.glb")).exists());
+}
+
+#[test]
+fn cli_usage_errors_exit_with_2() {
+    let here = Folder::new("usage");
+    for arguments in [
+        "",
+        "embed",
+        "embed a b --tag X",
+        "extract model.glb --passphrase secret",
+        "frobnicate",
+    ] {
+        let (code, _, said) = here.run(arguments);
+        assert_eq!(code, 2, "{arguments}");
+        assert!(said.contains("Usage"), "{said}");
+    }
+}

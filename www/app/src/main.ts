@@ -1,0 +1,35 @@
+/** The page: two views, one key form, one engine. */
+import { Check } from "./check";
+import { find } from "./dom";
+import { onDrop } from "./drop";
+import { engine } from "./engine";
+import { placeKeyForm, startKeyForm } from "./key-form";
+import { startOffline } from "./offline";
+import { errorCard } from "./outcome";
+import { Protect } from "./protect";
+import { startTabs } from "./tabs";
+
+const protectTab = find("#protect-tab");
+const checkTab = find("#check-tab");
+
+const check = new Check(find("#check"));
+const protect = new Protect(find("#protect"), (marked) => {
+  select(checkTab);
+  checkTab.focus();
+  void check.take(marked);
+});
+
+startKeyForm();
+const select = startTabs([protectTab, checkTab], placeKeyForm);
+select(protectTab);
+
+onDrop((files) => void (check.root.hidden ? protect : check).takeFiles(files));
+
+engine
+  .then((client) => client.version())
+  .then(
+    (version) => (find("#version").textContent = `meshmark ${version}`),
+    (error: unknown) => find("main").prepend(errorCard("Cannot start", error)),
+  );
+
+void startOffline();

@@ -1,0 +1,78 @@
+/** Results in words first, then numbers, then details. */
+import type { CarrierReading, Extraction, Verdict } from "meshmark";
+import { announce, h } from "./dom";
+import { count, odds, problem } from "./words";
+
+/** A result card: a headline, sentences, and whatever follows. */
+export function card(verdict: Verdict | "error", headline: string | Node[], sentences: string[], ...rest: Node[]): HTMLElement {
+  const said = sentences.map((sentence) => h("p", { class: "sentence" }, sentence));
+  return h("section", { class: "card result", "data-verdict": verdict, "aria-label": "Result" }, h("h2", {}, ...[headline].flat()), ...said, ...rest);
+}
+
+/** What could not be done, and why; the code is for whoever reports it. */
+export function errorCard(what: "Cannot mark" | "Cannot check" | "Cannot open" | "Cannot start", error: unknown): HTMLElement {
+  const { text, code, path } = problem(error);
+  const place = path ? [", at ", h("code", {}, path)] : [];
+  const headline = [h("strong", {}, what), document.createTextNode(`: ${text}.`)];
+  return card("error", headline, [], h("p", { class: "code" }, "Code ", h("code", {}, code), ...place));
+}
+
+/** Something to know that is no result. */
+export function note(text: string): HTMLElement {
+  return h("p", { class: "card note" }, text);
+}
+
+/** Puts a card where the view's results stand, and says its headline and sentences to screen readers. */
+export function present(outcome: HTMLElement, card: HTMLElement): void {
+  outcome.replaceChildren(card);
+  const said = card.matches(".note") ? [card] : [...card.querySelectorAll("h2, .sentence")];
+  announce(said.map((element) => element.textContent).join(" "));
+}
+
+/** Rows of a term and what belongs to it. */
+export function numbers(rows: [term: string, value: Node | string][]): HTMLElement {
+  return h("dl", { class: "numbers" }, ...rows.map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))));
+}
+
+/** "at most 1 in 10^24", for people. */
+export function chance(lnP: number): HTMLElement {
+  return h("span", {}, "at most ", oddsOf(lnP));
+}
+
+function oddsOf(lnP: number): HTMLElement {
+  const [text, exponent] = odds(lnP);
+  return h("span", {}, text, ...(exponent ? [h("sup", {}, exponent)] : []));
+}
+
+/** What a blind reading says, as rows of `numbers`. */
+export function readingRows(reading: Extraction): [string, Node | string][] {
+  return [
+    ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
+    ["Chance of this without the key", chance(reading.lnP)],
+    ["Agreement", `${Math.round(reading.agreement * 100)} %`],
+  ];
+}
+
+/** The carriers, one a row. */
+export function carrierTable(carriers: CarrierReading[]): HTMLElement {
+  const row = (carrier: CarrierReading) =>
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, carrier.name),
+      h("td", {}, carrier.tag ?? "–"),
+      h("td", {}, oddsOf(carrier.lnP)),
+      h("td", {}, `${Math.round(carrier.agreement * 100)} %`),
+      h("td", {}, `${count(carrier.ownedAddresses)} of ${count(carrier.addresses)}`),
+    );
+  const heads = ["Carrier", "Tag", "Chance at most", "Agreement", "Places"].map((text) => h("th", { scope: "col" }, text));
+  return h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...carriers.map(row))));
+}
+
+export function details(summary: string, ...content: Node[]): HTMLElement {
+  return h("details", {}, h("summary", {}, summary), ...content);
+}
+
+export function actions(...buttons: Node[]): HTMLElement {
+  return h("div", { class: "actions" }, ...buttons);
+}

@@ -1,0 +1,36 @@
+/** A model for the eye: three.js reads it, every URL in it answered from memory. */
+import { LoadingManager, type Group } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { decoded, type Model } from "../model";
+
+/**
+ * The model's scene. No URL in a model reaches the network: files that were handed in and data: URIs become blob: URLs,
+ * anything else becomes an empty one.
+ */
+export async function loadScene(model: Model): Promise<Group> {
+  const made: string[] = [];
+  const manager = new LoadingManager();
+  manager.setURLModifier((url) => {
+    if (url.startsWith("blob:")) {
+      return url;
+    }
+    const content = url.startsWith("data:") ? dataOf(url) : (model.buffers[decoded(url)] ?? model.images[decoded(url)]);
+    const local = URL.createObjectURL(new Blob(content ? [content as BlobPart] : []));
+    made.push(local);
+    return local;
+  });
+  try {
+    const { scene } = await new GLTFLoader(manager).parseAsync(model.bytes.slice().buffer, "");
+    return scene;
+  } finally {
+    made.forEach((url) => URL.revokeObjectURL(url));
+  }
+}
+
+function dataOf(uri: string): Uint8Array | undefined {
+  const [, isBase64, text] = /^data:[^,]*?(;base64)?,(.*)$/s.exec(uri) ?? [];
+  if (text === undefined) {
+    return undefined;
+  }
+  return isBase64 ? Uint8Array.from(atob(text), (c) => c.charCodeAt(0)) : new TextEncoder().encode(decoded(text));
+}

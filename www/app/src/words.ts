@@ -1,0 +1,61 @@
+/** Numbers and outcomes in words. */
+import type { Stage, Verdict } from "meshmark";
+import { MeshmarkError } from "meshmark/client";
+
+export const VERDICTS: Record<Verdict, string> = {
+  found: "Your mark was found",
+  partial: "A mark fits partly",
+  none: "No evidence of this key",
+  "cannot-check": "Cannot check",
+};
+
+export const STAGES: Record<Stage | "key", string> = {
+  key: "Making your key from the passphrase",
+  read: "Reading the model",
+  embed: "Writing the mark into the geometry",
+  write: "Writing the copy",
+  measure: "Measuring the geometry",
+  test: "Looking for the mark",
+};
+
+const LN_10 = Math.log(10);
+
+/**
+ * A bound of a probability, rounded towards caution: `["100 %", ""]`, `["1 in 1,234", ""]`, or `["1 in 10", "24"]` with an
+ * exponent.
+ */
+export function odds(lnP: number): [text: string, exponent: string] {
+  const digits = Math.floor(-lnP / LN_10);
+  if (digits < 1) {
+    return [`${Math.ceil(Math.exp(lnP) * 100)} %`, ""];
+  }
+  return digits < 6 ? [`1 in ${count(Math.floor(Math.exp(-lnP)))}`, ""] : ["1 in 10", String(digits)];
+}
+
+export function count(n: number): string {
+  return n.toLocaleString("en");
+}
+
+/** A fraction as a percentage. */
+export function percent(fraction: number): string {
+  return `${significant(fraction * 100)} %`;
+}
+
+/** Two or three significant digits, without an exponent where that can be read. */
+export function significant(x: number): string {
+  return x !== 0 && (Math.abs(x) < 1e-5 || Math.abs(x) >= 1e7)
+    ? x.toExponential(2)
+    : x.toLocaleString("en", { minimumSignificantDigits: 2, maximumSignificantDigits: 3, useGrouping: false });
+}
+
+export function bytes(n: number): string {
+  return n < 1e6 ? `${count(Math.ceil(n / 1e3))} kB` : `${(n / 1e6).toFixed(1)} MB`;
+}
+
+/** What went wrong as a sentence without its full stop, and what a program would call it. */
+export function problem(error: unknown): { text: string; code: string; path: string | null } {
+  if (error instanceof MeshmarkError) {
+    return { text: error.message.replace(/\.$/, ""), code: error.code, path: error.path };
+  }
+  return { text: error instanceof Error ? error.message.replace(/\.$/, "") : String(error), code: "page", path: null };
+}

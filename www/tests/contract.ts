@@ -1,0 +1,44 @@
+// Compiled, never run: the package's functions have exactly the types that the module's contract declares.
+import type * as contract from "../../src/wasm/types.js";
+import * as meshmark from "meshmark";
+import { createClient, MeshmarkError, type Client } from "meshmark/client";
+
+type Contract = typeof contract;
+type Package = Pick<typeof meshmark, keyof Contract>;
+type Same<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ? 1 : 2 ? true : false;
+
+export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F]> } = {
+  deriveKey: true,
+  embed: true,
+  measure: true,
+  extract: true,
+  verify: true,
+  inspect: true,
+  demoModel: true,
+  version: true,
+};
+
+/** Every function has its promise in the client, with the same result. */
+export const sameResults: {
+  [F in keyof Contract]: Same<Promise<ReturnType<Contract[F]>>, ReturnType<Client[F]>>;
+} = { ...sameFunctions };
+
+export async function useAll(model: Uint8Array, signal: AbortSignal): Promise<string | null> {
+  await meshmark.init();
+  const key = meshmark.deriveKey("Jane", "correct horse");
+  const { model: marked, report } = meshmark.embed(model, undefined, "JANE-1", key, { strength: "strong" });
+  const reading = meshmark.extract(meshmark.measure(marked, undefined), key);
+  const client = await createClient({ workerUrl: "/worker.js", wasmUrl: new URL("https://a.example/meshmark.wasm") });
+  try {
+    await client.embed(model, {}, 7, key, { carriers: ["ring"] }, { signal, onProgress: (stage, fraction) => void [stage, fraction] });
+  } catch (error) {
+    return error instanceof MeshmarkError ? error.code : null;
+  } finally {
+    client.dispose();
+  }
+  // @ts-expect-error a report holds no key
+  report.key;
+  // @ts-expect-error a key is bytes
+  meshmark.extract(marked, "key");
+  return reading.tag;
+}

@@ -1,0 +1,106 @@
+// The facade in Node: loading, errors, size.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readdirSync, readFileSync } from "node:fs";
+import { test } from "node:test";
+import { gzipSync } from "node:zlib";
+import * as meshmark from "meshmark";
+import { createClient, MeshmarkError } from "meshmark/client";
+import { packageFolder } from "./support.mjs";
+
+const wasm = new URL("wasm/meshmark_bg.wasm", packageFolder);
+
+/** Runs a module in a fresh Node, where nothing has been loaded yet; returns what it prints. */
+function fresh(code) {
+  return execFileSync(process.execPath, ["--input-type=module", "--eval", code], { cwd: new URL(".", import.meta.url), encoding: "utf8" }).trim();
+}
+
+test("importing touches no browser global", () => {
+  const output = fresh(`
+    for (const name of ["window", "self", "document", "navigator", "location", "Worker", "localStorage"]) {
+      Object.defineProperty(globalThis, name, { get() { throw new Error("touched " + name); } });
+    }
+    await import("meshmark");
+    await import("meshmark/client");
+    console.log("untouched");`);
+  assert.equal(output, "untouched");
+});
+
+for (const [what, input] of Object.entries({
+  "nothing, from disk": "",
+  "a file URL": "url",
+  "a file URL as text": "url.href",
+  bytes: "await readFile(url)",
+  "a compiled module": "await WebAssembly.compile(await readFile(url))",
+  "a response": "new Response(await readFile(url), { headers: { 'content-type': 'application/wasm' } })",
+  "a response with another MIME type": "new Response(await readFile(url), { headers: { 'content-type': 'application/octet-stream' } })",
+})) {
+  test(`init takes ${what}`, () => {
+    const output = fresh(`
+      import { readFile } from "node:fs/promises";
+      import { init, version } from "meshmark";
+      const url = new URL(${JSON.stringify(wasm.href)});
+      console.warn = () => {};
+      await init(${input});
+      console.log(version());`);
+    const { version } = JSON.parse(readFileSync(new URL("package.json", packageFolder), "utf8"));
+    assert.equal(output, version);
+  });
+}
+
+test("init fails with a code, and can then be repeated", () => {
+  const output = fresh(`
+    import { init, version } from "meshmark";
+    await init(new Uint8Array(8)).catch((error) => console.log(error.name, error.code));
+    await init();
+    console.log(typeof version());`);
+  assert.equal(output, "MeshmarkError init.failed\nstring");
+});
+
+test("a function called before init says so", () => {
+  const output = fresh(`
+    import { version } from "meshmark";
+    try { version(); } catch (error) { console.log(error.name, error.code); }`);
+  assert.equal(output, "MeshmarkError init.missing");
+});
+
+test("init is idempotent", async () => {
+  assert.equal(meshmark.init(), meshmark.init());
+  await meshmark.init();
+});
+
+test("what the module throws is a MeshmarkError with code and path", async () => {
+  await meshmark.init();
+  const truncated = meshmark.demoModel().slice(0, 1000);
+  assert.throws(() => meshmark.inspect(truncated), (error) => {
+    assert.ok(error instanceof MeshmarkError && error instanceof Error);
+    assert.match(error.code, /^document\./);
+    assert.ok(error.message.length > 0);
+    assert.ok(error.path === null || typeof error.path === "string");
+    return true;
+  });
+});
+
+test("a key of another length is refused", async () => {
+  await meshmark.init();
+  const isKeyError = (error) => error instanceof MeshmarkError && error.code.startsWith("key.");
+  assert.throws(() => meshmark.embed(meshmark.demoModel(), undefined, "TAG", new Uint8Array(31)), isKeyError);
+});
+
+test("an aborted signal stops the work with code aborted", async () => {
+  await meshmark.init();
+  const measure = () => meshmark.measure(meshmark.demoModel(), undefined, undefined, AbortSignal.abort());
+  assert.throws(measure, (error) => error instanceof MeshmarkError && error.code === "aborted");
+});
+
+test("where there is no Worker, createClient rejects with a code", async () => {
+  await assert.rejects(createClient(), (error) => error instanceof MeshmarkError && error.code === "worker.failed");
+});
+
+test("the facade stays within 5 KiB, compressed", (t) => {
+  const dist = new URL("dist/", packageFolder);
+  const code = readdirSync(dist).filter((name) => name.endsWith(".js")).map((name) => readFileSync(new URL(name, dist)));
+  const size = gzipSync(Buffer.concat(code), { level: 9 }).length;
+  t.diagnostic(`facade ${size} bytes, module ${gzipSync(readFileSync(wasm), { level: 9 }).length} bytes, compressed`);
+  assert.ok(size <= 5 * 1024, `${size} bytes`);
+});

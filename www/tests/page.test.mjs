@@ -1,0 +1,398 @@
+// The built page in Chromium, as a person uses it: real files, real clicks, no network but its own origin.
+import assert from "node:assert/strict";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { after, afterEach, before, beforeEach, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { NodeIO } from "@gltf-transform/core";
+import * as meshmark from "meshmark";
+import { launch, serve } from "./browser.mjs";
+import { assertNoNewErrors, glbFromObj, OWNER, PASSPHRASE, repository, sharedModel, TAG } from "./support.mjs";
+
+const DESKTOP = { width: 1280, height: 800 };
+const CUBE = `
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8`;
+const SLOW = 120_000;
+
+const pictures = new URL("test-output/", repository);
+const folder = mkdtempSync(join(tmpdir(), "meshmark-page-"));
+let server;
+let browser;
+let context;
+let page;
+/** What must stay empty: requests to elsewhere, policy violations, script errors, dialogs. */
+let offences;
+
+before(async () => {
+  mkdirSync(pictures, { recursive: true });
+  await meshmark.init();
+  server = await serve(new URL("../app", import.meta.url));
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.close();
+  rmSync(folder, { recursive: true });
+});
+
+beforeEach(() => open());
+
+afterEach(async () => {
+  const violations = await page.evaluate(() => globalThis.violations);
+  await context.close();
+  assert.deepEqual([...offences, ...violations], []);
+});
+
+async function open(options = {}) {
+  await context?.close();
+  offences = [];
+  context = await browser.newContext({ viewport: DESKTOP, colorScheme: "light", ...options });
+  context.on("request", (request) => {
+    const url = new URL(request.url());
+    if (url.origin !== server.origin && url.protocol !== "blob:") {
+      offences.push(`request to ${request.url()}`);
+    }
+  });
+  await context.addInitScript(() => {
+    globalThis.violations = [];
+    addEventListener("securitypolicyviolation", (event) => globalThis.violations.push(`${event.violatedDirective} ${event.blockedURI}`));
+  });
+  page = await context.newPage();
+  page.setDefaultTimeout(SLOW);
+  page.on("pageerror", (error) => offences.push(`error ${error.message}`));
+  page.on("dialog", (dialog) => offences.push(`dialog ${dialog.message()}`));
+  page.on("console", (message) => /content security policy/i.test(message.text()) && offences.push(message.text()));
+  await page.goto(server.origin);
+}
+
+/** Drops files or folders from disk on the middle of the page, as the desktop does. */
+async function drop(...paths) {
+  const session = await context.newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"]) {
+    await session.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
+  }
+}
+
+function onDisk(name, bytes) {
+  const path = join(folder, name);
+  writeFileSync(path, bytes);
+  return path;
+}
+
+const view = () => page.locator(".view:visible");
+const result = () => view().locator(".result");
+const headline = () => result().getByRole("heading", { level: 2 }).textContent();
+const facts = () => view().locator(".facts");
+const picture = (name) => page.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
+
+async function fillKey(passphrase = PASSPHRASE) {
+  await page.getByLabel("Owner’s name").fill(OWNER);
+  await page.getByLabel("Passphrase", { exact: true }).and(page.locator("input:not([type=radio])")).fill(passphrase);
+}
+
+async function mark(tag = TAG) {
+  await fillKey();
+  await page.getByLabel("Tag", { exact: true }).fill(tag);
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await result().waitFor();
+}
+
+async function check(passphrase = PASSPHRASE) {
+  await fillKey(passphrase);
+  await page.getByRole("button", { name: "Check this model" }).click();
+  await result().waitFor();
+}
+
+/** Presses a button that saves a file; returns where it is. */
+async function saved(name) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+  const path = join(folder, download.suggestedFilename());
+  await download.saveAs(path);
+  return path;
+}
+
+async function dropped(path) {
+  await drop(path);
+  await facts().getByText(basename(path), { exact: true }).waitFor();
+}
+
+for (const [name, source] of [
+  ["demo.glb", () => meshmark.demoModel()],
+  ["chr_knight.glb", (t) => sharedModel("gltf/chr_knight.glb", t)],
+]) {
+  test(`${name} is dropped, marked, downloaded, and its mark found with this key alone`, async (t) => {
+    const host = source(t);
+    if (!host) {
+      return;
+    }
+    await dropped(onDisk(name, host));
+    await mark();
+    assert.equal(await headline(), "Your mark is in the copy");
+    await picture(`marked-${name}`);
+    await page.getByRole("button", { name: "Heat map" }).click();
+    await page.getByText(/units = .* % of the diagonal/).waitFor();
+    await picture(`heat-${name}`);
+    for (const version of ["Before", "After"]) {
+      await page.getByRole("button", { name: version, pressed: false }).click();
+      await page.getByRole("button", { name: version, pressed: true }).waitFor();
+    }
+    const copy = await saved(/^Download/);
+    assert.equal(basename(copy), name.replace(".glb", ".marked.glb"));
+    await assertNoNewErrors(host, new Uint8Array(readFileSync(copy)));
+
+    await page.getByRole("tab", { name: "Check" }).click();
+    await dropped(copy);
+    await check();
+    assert.equal(await headline(), "Your mark was found");
+    await result().getByText(/at most 1 in 10/).first().waitFor();
+    await picture(`found-${name}`);
+    const report = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8"));
+    assert.equal(report.result.verdict, "found");
+    assert.equal(report.result.tag, TAG);
+    assert.ok(!JSON.stringify(report).includes(PASSPHRASE) && !JSON.stringify(report).includes(OWNER));
+
+    await check("another passphrase");
+    assert.equal(await headline(), "No evidence of this key");
+    await result().getByText("This does not prove that the model is not yours.").waitFor();
+    await picture(`none-${name}`);
+
+    await page.getByLabel(/Tag to look for/).fill(TAG);
+    await check();
+    assert.equal(await headline(), "Your mark was found");
+  });
+}
+
+test("a .gltf with its folder is dropped, marked, and downloaded file by file", async () => {
+  const io = new NodeIO();
+  const { json, resources } = await io.writeJSON(await io.readBinary(meshmark.demoModel()), { basename: "scene" });
+  const scene = join(folder, "scene");
+  mkdirSync(scene);
+  writeFileSync(join(scene, "scene.gltf"), JSON.stringify(json));
+  for (const [uri, bytes] of Object.entries(resources)) {
+    writeFileSync(join(scene, uri), bytes);
+  }
+  await drop(scene);
+  await facts().getByText("scene.gltf").waitFor();
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+  const gltf = await saved("Download scene.marked.gltf");
+  const bin = await saved("Download scene.bin");
+
+  await page.getByRole("tab", { name: "Check" }).click();
+  await drop(gltf, bin);
+  await facts().getByText("scene.marked.gltf").waitFor();
+  await check();
+  assert.equal(await headline(), "Your mark was found");
+});
+
+test("a truncated file is refused in words, and a good one afterwards is not", async () => {
+  const model = meshmark.demoModel();
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(onDisk("cut.glb", model.slice(0, model.length / 2)));
+  await result().waitFor();
+  assert.match(await headline(), /^Cannot check: .*\w+/);
+  await result().getByText("document.").waitFor();
+  await picture("truncated");
+  await check();
+  assert.match(await headline(), /^Cannot check: /);
+
+  await dropped(onDisk("whole.glb", model));
+  await view().locator(".viewer canvas").first().waitFor();
+  assert.equal(await result().count(), 0);
+});
+
+test("a model that is too small is told so before and after it is tried, in numbers", async () => {
+  await dropped(onDisk("cube.glb", glbFromObj(CUBE)));
+  await view().getByText(/too small or too regular to hold a mark: it has \d+ distinct places where \d+ are needed/).waitFor();
+  await mark();
+  assert.match(await headline(), /^Cannot mark: .*\d/);
+  await picture("too-small");
+});
+
+test("compressed geometry is refused in words", async () => {
+  const compressed = { asset: { version: "2.0" }, extensionsUsed: ["KHR_draco_mesh_compression"], extensionsRequired: ["KHR_draco_mesh_compression"] };
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(onDisk("compressed.gltf", JSON.stringify(compressed)));
+  await result().waitFor();
+  assert.match(await headline(), /^Cannot check: .*(Draco|compress)/i);
+});
+
+test("files without a model are refused in words", async () => {
+  await drop(onDisk("notes.txt", "nothing"));
+  await result().waitFor();
+  assert.equal(await headline(), "Cannot open: There is no .glb or .gltf file in this.");
+});
+
+test("work can be cancelled at any stage, and started again", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  for (const stage of ["Making your key", "Writing the mark"]) {
+    await page.evaluate((words) => {
+      const outcome = document.querySelector("#protect [data-outcome]");
+      new MutationObserver((_, observer) => {
+        if (outcome.textContent.includes(words)) {
+          observer.disconnect();
+          outcome.querySelector("button").click();
+        }
+      }).observe(outcome, { childList: true, subtree: true, characterData: true });
+    }, stage);
+    await fillKey();
+    await page.getByLabel("Tag", { exact: true }).fill(TAG);
+    await page.getByRole("button", { name: "Mark this model" }).click();
+    await view().getByText("Cancelled. Nothing was changed.").waitFor();
+  }
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+});
+
+test("after one visit the page works without a network, through a reload", async () => {
+  await page.getByText("Ready to work offline").waitFor();
+  await context.setOffline(true);
+  await page.reload();
+  await page.getByRole("button", { name: "Try the demo model" }).click();
+  await facts().getByText("demo.glb").waitFor();
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+});
+
+test("a made key file marks and finds, and a file of another length is refused", async () => {
+  await page.getByRole("button", { name: "Try the demo model" }).click();
+  await facts().getByText("demo.glb").waitFor();
+  await page.locator("label", { hasText: "Key file" }).first().click();
+  const keyFile = await saved("Make a key file");
+  assert.equal(readFileSync(keyFile).length, 32);
+  await page.getByLabel("Tag", { exact: true }).fill(TAG);
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await result().waitFor();
+  await page.getByRole("button", { name: "Check this copy" }).click();
+  await page.locator("input#key-file").setInputFiles(onDisk("short.key", Buffer.alloc(31)));
+  await page.getByText("A key file has exactly 32 bytes; this one has 31.").waitFor();
+  await page.locator("input#key-file").setInputFiles(keyFile);
+  await page.getByText("This key file is in use.").waitFor();
+  await page.getByRole("button", { name: "Check this model" }).click();
+  await result().waitFor();
+  assert.equal(await headline(), "Your mark was found");
+});
+
+test("what a tag cannot be is said while it is typed", async () => {
+  const tag = page.getByLabel("Tag", { exact: true });
+  for (const [text, problem] of [
+    ["a b", /no spaces/],
+    ["a_b", /cannot hold “_”/],
+    ["123456789", /at most 8/],
+    ["abc.", /full stop/],
+    ["a.b-C9", /^$/],
+  ]) {
+    await tag.fill(text);
+    assert.match(await page.locator("#tag-error").textContent(), problem);
+  }
+});
+
+test("names in files are text, never markup", async () => {
+  const hostile = '<img src=x onerror="alert(1)">.glb';
+  await drop(onDisk(hostile, withNames(meshmark.demoModel(), hostile)));
+  await facts().getByText(hostile).waitFor();
+  await mark();
+  await page.getByRole("button", { name: `Download ${hostile.replace(".glb", ".marked.glb")}` }).waitFor();
+  assert.equal(await page.locator("img").count(), 0);
+});
+
+test("the keyboard does all of it", async () => {
+  const press = async (...keys) => {
+    for (const key of keys) {
+      await page.keyboard.press(key);
+    }
+  };
+  const focused = () => page.evaluate(() => document.activeElement.textContent || document.activeElement.id);
+  await press("Tab");
+  assert.equal(await focused(), "Protect");
+  await press("ArrowRight");
+  assert.equal(await focused(), "Check");
+  await press("Home", "Tab");
+  assert.equal(await focused(), "Choose files");
+  await press("Tab", "Tab", "Enter");
+  await facts().getByText("demo.glb").waitFor();
+
+  const canvas = view().getByRole("application");
+  await canvas.focus();
+  await page.waitForTimeout(500);
+  const look = () => canvas.screenshot();
+  const first = await look();
+  await press("ArrowLeft", "ArrowUp", "+");
+  await page.waitForTimeout(500);
+  assert.notDeepEqual(await look(), first);
+  await press("0");
+  await page.waitForTimeout(500);
+  assert.deepEqual(await look(), first);
+
+  await page.locator("#owner").focus();
+  await page.keyboard.type(OWNER);
+  await press("Tab");
+  await page.keyboard.type(PASSPHRASE);
+  await press("Tab", "Space");
+  assert.equal(await page.locator("#passphrase").getAttribute("type"), "text");
+  await press("Tab");
+  await page.keyboard.type(TAG);
+  await press("Enter");
+  await result().waitFor();
+  assert.match(await page.locator("#announcer").textContent(), /^Your mark is in the copy/);
+});
+
+test("every control has a name", async () => {
+  await page.getByRole("button", { name: "Try the demo model" }).click();
+  await facts().getByText("demo.glb").waitFor();
+  const controls = await page.locator("button:visible, input:visible, select:visible, canvas[tabindex]:visible").all();
+  assert.ok(controls.length > 10);
+  for (const control of controls) {
+    const name = (await control.ariaSnapshot()).match(/"(.+)"/)?.[1];
+    assert.ok(name, await control.evaluate((element) => element.outerHTML));
+  }
+});
+
+for (const [name, options] of [
+  ["desktop-light", {}],
+  ["desktop-dark", { colorScheme: "dark" }],
+  ["mobile", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
+]) {
+  test(`the page fits ${name}`, async () => {
+    await open(options);
+    await picture(`${name}-empty`);
+    await page.getByRole("button", { name: "Try the demo model" }).click();
+    await mark();
+    await page.waitForTimeout(500);
+    await picture(`${name}-marked`);
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `${overflow} px too wide`);
+  });
+}
+
+/** The same .glb with every node, mesh and material named so; the JSON chunk grows, the BIN chunk stays. */
+function withNames(glb, name) {
+  const jsonLength = Buffer.from(glb).readUInt32LE(12);
+  const json = JSON.parse(Buffer.from(glb.subarray(20, 20 + jsonLength)).toString());
+  for (const object of [json.nodes, json.meshes, json.materials].flatMap((list) => list ?? [])) {
+    object.name = name;
+  }
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, " ")]);
+  const rest = Buffer.from(glb.subarray(20 + jsonLength));
+  const head = Buffer.from(glb.subarray(0, 20));
+  head.writeUInt32LE(20 + padded.length + rest.length, 8);
+  head.writeUInt32LE(padded.length, 12);
+  return Buffer.concat([head, padded, rest]);
+}

@@ -1,0 +1,96 @@
+// What several tests need: where things are, models to mark, an owner.
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import validator from "gltf-validator";
+
+export const repository = new URL("../../", import.meta.url);
+export const packageFolder = new URL("../meshmark/", import.meta.url);
+export const contractFile = fileURLToPath(new URL("src/wasm/types.d.ts", repository));
+
+export const OWNER = "Test Owner";
+export const PASSPHRASE = "a passphrase for tests only";
+export const TAG = "TEST-42";
+
+const sharedModels = new URL("../shared/models/", repository);
+
+/** Bytes of a development model beside the repository, or `null` with a line that says it is not there. */
+export function sharedModel(path, t) {
+  const url = new URL(path, sharedModels);
+  if (existsSync(url)) {
+    return new Uint8Array(readFileSync(url));
+  }
+  t.skip(`../shared/models/${path} is not here`);
+  return null;
+}
+
+/** A .glb of the vertices and triangles of an OBJ file, nothing else. */
+export function glbFromObj(text) {
+  const positions = [];
+  const indices = [];
+  for (const line of text.split("\n")) {
+    const [kind, ...fields] = line.trim().split(/\s+/);
+    if (kind === "v") {
+      positions.push(...fields.slice(0, 3).map(Number));
+    } else if (kind === "f") {
+      const corners = fields.map((field) => parseInt(field, 10) - 1);
+      for (let i = 2; i < corners.length; i++) {
+        indices.push(corners[0], corners[i - 1], corners[i]);
+      }
+    }
+  }
+  const points = new Float32Array(positions);
+  const axis = (k) => points.filter((_, i) => i % 3 === k);
+  const bin = Buffer.concat([Buffer.from(points.buffer), Buffer.from(new Uint32Array(indices).buffer)]);
+  return glb(
+    {
+      asset: { version: "2.0" },
+      scene: 0,
+      scenes: [{ nodes: [0] }],
+      nodes: [{ mesh: 0 }],
+      meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+      accessors: [
+        {
+          bufferView: 0,
+          componentType: 5126,
+          type: "VEC3",
+          count: points.length / 3,
+          min: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.min(a, b))),
+          max: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.max(a, b))),
+        },
+        { bufferView: 1, componentType: 5125, type: "SCALAR", count: indices.length },
+      ],
+      bufferViews: [
+        { buffer: 0, byteLength: points.byteLength },
+        { buffer: 0, byteOffset: points.byteLength, byteLength: indices.length * 4 },
+      ],
+      buffers: [{ byteLength: bin.length }],
+    },
+    bin,
+  );
+}
+
+/** The container: glTF 2.0, section 4.4. */
+function glb(json, bin) {
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, " ")]);
+  const u32 = (...values) => Buffer.from(new Uint32Array(values).buffer);
+  const length = 12 + 8 + padded.length + 8 + bin.length;
+  return new Uint8Array(Buffer.concat([u32(0x46546c67, 2, length, padded.length, 0x4e4f534a), padded, u32(bin.length, 0x004e4942), bin]));
+}
+
+/** Errors that Khronos's validator finds, as `CODE pointer`. */
+export async function validationErrors(model, files = {}) {
+  const report = await validator.validateBytes(model, {
+    externalResourceFunction: (uri) =>
+      files[decodeURIComponent(uri)] ? Promise.resolve(files[decodeURIComponent(uri)]) : Promise.reject(`no file ${uri}`),
+  });
+  return report.issues.messages.filter(({ severity }) => severity === 0).map(({ code, pointer }) => `${code} ${pointer}`);
+}
+
+/** The marked model has no error that its host did not have. */
+export async function assertNoNewErrors(host, marked) {
+  const before = await validationErrors(host);
+  const after = await validationErrors(marked);
+  assert.deepEqual(after.filter((error) => !before.includes(error)), []);
+}

@@ -109,11 +109,10 @@ impl Accessor {
             }
             None => None,
         };
-        let limit = usize::MAX as u64;
         let count = usize::try_from(accessor.count).map_err(|_| DocumentError::TooLarge {
             what: "the number of elements",
             value: accessor.count,
-            limit,
+            limit: usize::MAX as u64,
             pointer: Some(format!("/accessors/{index}/count")),
         })?;
         Ok(Self {

@@ -120,6 +120,12 @@ impl Document {
         let (nodes, roots) = node::read(&root)?;
         check_references(&root, &accessors, &views)?;
         let sharing = Sharing::new(&root, &accessors, &views);
+        let is_sparse_position = |accessor: &&Accessor| {
+            accessor.index_region().is_some() && sharing.is_position(accessor.index)
+        };
+        for accessor in accessors.iter().filter(is_sparse_position) {
+            accessor.slots(&storages)?;
+        }
         let extensions_used = root.extensions_used;
         Ok(Self {
             container: parts.container,
@@ -211,8 +217,8 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// [`DocumentError::NotPositions`] if no primitive uses the accessor as `POSITION`,
-    /// [`DocumentError::NonFinitePosition`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    /// [`DocumentError::NotPositions`] if no primitive uses the accessor as `POSITION`, and
+    /// [`DocumentError::NonFinitePosition`].
     pub fn positions(&self, accessor: usize) -> Result<Vec<[f64; 3]>, DocumentError> {
         let accessor = self.position_accessor(accessor)?;
         let slots = accessor.slots(&self.storages)?;
@@ -248,7 +254,7 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// [`DocumentError::NotPositions`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    /// [`DocumentError::NotPositions`].
     pub fn slots(&self, accessor: usize) -> Result<Vec<Option<Slot>>, DocumentError> {
         self.position_accessor(accessor)?.slots(&self.storages)
     }
@@ -260,7 +266,7 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// [`DocumentError::NotPositions`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
+    /// [`DocumentError::NotPositions`].
     pub fn fixed_elements(&self, accessor: usize) -> Result<Vec<bool>, DocumentError> {
         let accessor = self.position_accessor(accessor)?;
         let slots = accessor.slots(&self.storages)?;

@@ -2,6 +2,8 @@
 
 mod distortion;
 mod normal;
+mod pose;
 
 pub use distortion::{Distortion, diagonal};
 pub use normal::vertex_normals;
+pub use pose::Pose;

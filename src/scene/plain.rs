@@ -40,7 +40,7 @@ pub fn to_glb(mesh: &Mesh) -> Vec<u8> {
         concat!(
             r#"{{"asset":{{"version":"2.0","generator":"meshmark"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"#,
             r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1}},"indices":2,"material":0}}]}}],"#,
-            r#""materials":[{{"pbrMetallicRoughness":{{"baseColorFactor":[0.72,0.74,0.78,1],"metallicFactor":0,"roughnessFactor":0.55}}}}],"#,
+            r#""materials":[{{"pbrMetallicRoughness":{{"baseColorFactor":[0.83,0.55,0.38,1],"metallicFactor":0,"roughnessFactor":0.55}}}}],"#,
             r#""accessors":[{{"bufferView":0,"componentType":5126,"count":{v},"type":"VEC3","min":{low:?},"max":{high:?}}},"#,
             r#"{{"bufferView":1,"componentType":5126,"count":{v},"type":"VEC3"}},"#,
             r#"{{"bufferView":2,"componentType":5125,"count":{i},"type":"SCALAR"}}],"#,

@@ -89,10 +89,7 @@ pub fn embed(
             .iter()
             .map(|carrier| carrier.addresses)
             .sum();
-        return Err(Error::Unreadable {
-            ln_p: read_back.ln_p,
-            addresses,
-        });
+        return Err(Error::Unreadable { addresses });
     }
     let report = EmbedReport {
         tag: payload.tag(),

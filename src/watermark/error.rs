@@ -40,13 +40,10 @@ pub enum Error {
     NoCarrier,
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
-        "the mark could not be read back from the marked model (ln p = {ln_p:.1}, which had to be below -20.7), so nothing \
-         was returned: the model has {addresses} distinct neighbourhoods, of which a key owns a quarter; a greater \
-         strength or another key may do"
+        "the mark could not be read back from the marked model, so nothing was returned: the model has {addresses} distinct \
+         neighbourhoods, of which a key owns a quarter; a greater strength or another key may do"
     )]
     Unreadable {
-        /// The bound that was reached.
-        ln_p: f64,
         /// Distinct addresses of the marked model.
         addresses: usize,
     },

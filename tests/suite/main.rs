@@ -1,5 +1,7 @@
 //! The test suite: the same tests natively, in node and in a browser, over the same generated fixtures.
 
+#![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
+
 #[cfg(feature = "browser")]
 wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_browser);
 

@@ -1,11 +1,13 @@
 //! Floors of robustness on small generated meshes: what once survived must survive.
 
 use crate::support::fixtures::{key, marked, payload};
+use glam::DVec3;
 use meshmark::attack::{crop, quantize, reorder, similarity};
 use meshmark::document::Document;
 use meshmark::mesh::{Mesh, shapes};
 use meshmark::scene::{Scene, to_glb};
 use meshmark::{Evidence, Verdict, extract};
+use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// The marked copy of a mesh, as it comes out of its file.
@@ -14,6 +16,68 @@ fn marked_mesh(mesh: &Mesh) -> Mesh {
     Scene::gather(&Document::read(&model, &Default::default()).unwrap())
         .unwrap()
         .mesh
+}
+
+/// A regular mesh: four copies of a smooth, regular tube of different sizes, which only their places tell apart.
+#[wasm_bindgen_test(unsupported = test)]
+fn robustness_of_regular_shapes() {
+    let mut mesh = Mesh::default();
+    for (copy, size) in [1.0, 0.8, 0.65, 0.9].into_iter().enumerate() {
+        let first = mesh.positions.len() as u32;
+        let tube = tube();
+        let place = DVec3::new(copy as f64 * 3.0, size, 0.3 * size);
+        mesh.positions
+            .extend(tube.positions.iter().map(|p| *p * size + place));
+        mesh.triangles.extend(
+            tube.triangles
+                .iter()
+                .map(|triangle| triangle.map(|v| v + first)),
+        );
+    }
+    let marked = marked_mesh(&mesh);
+    for (attack, suspect) in [
+        ("none", marked.clone()),
+        ("similarity, reorder", reorder(&similarity(&marked, 41), 42)),
+        ("quantize 14", quantize(&marked, 14)),
+        (
+            "similarity, quantize 12",
+            quantize(&similarity(&marked, 43), 12),
+        ),
+    ] {
+        let answer = extract(&Evidence::measure(&suspect), &key(1));
+        assert_eq!(answer.verdict, Verdict::Found, "{attack}: {answer:?}");
+        assert!(answer.ln_p < -100.0, "{attack}: ln p {:.0}", answer.ln_p);
+    }
+}
+
+/// A torus whose vertices all look alike.
+fn tube() -> Mesh {
+    let (along, across) = (30, 16);
+    let position = |v: u32| {
+        let (s, t) = (
+            TAU * f64::from(v / across) / f64::from(along),
+            TAU * f64::from(v % across) / f64::from(across),
+        );
+        let radius = 1.0 + 0.35 * libm::cos(t);
+        DVec3::new(
+            radius * libm::cos(s),
+            radius * libm::sin(s),
+            0.35 * libm::sin(t),
+        )
+    };
+    let at = |i: u32, j: u32| i % along * across + j % across;
+    let quad = |v: u32| {
+        let (i, j) = (v / across, v % across);
+        [
+            [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+            [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+        ]
+    };
+    let count = along * across;
+    Mesh {
+        positions: (0..count).map(position).collect(),
+        triangles: (0..count).flat_map(quad).collect(),
+    }
 }
 
 /// Every attack with the largest ln p at which each mesh must be found.

@@ -146,7 +146,7 @@ fn verify_finds_the_expected_payload_and_names_another() {
     assert_eq!(verify(&evidence, &key(2), payload()).verdict, Verdict::None);
 }
 
-/// A third of the demonstration model's rings: few enough that decoding may fail, and neighbours in payload must not pass.
+/// A small mesh: few enough symbols that decoding may fail, and neighbours in payload must not pass.
 #[wasm_bindgen_test(unsupported = test)]
 fn verify_never_takes_one_payload_for_another() {
     let host = to_glb(&shapes::planet(20, 26));

@@ -1,7 +1,8 @@
 //! The address of a ring: who it is, whatever it is called in a file.
 
 use super::feature::{Features, Neighbourhoods};
-use crate::mesh::Rings;
+use crate::geometry::Pose;
+use crate::mesh::{Mesh, Rings};
 use glam::DVec3;
 
 /// What an address is a hash of.
@@ -11,34 +12,89 @@ pub enum AddressKind {
     Connectivity,
     /// The valence and coarse ratios of the ring's lengths: for meshes whose connectivity is regular.
     Geometry,
+    /// The cell of the model's own frame that the vertex lies in, with the frame's axes turned one of four ways: for regular
+    /// and small meshes. A crop moves the frame, and the mark is lost.
+    Position(Turn),
 }
 
-impl AddressKind {
-    pub const ALL: [AddressKind; 2] = [AddressKind::Connectivity, AddressKind::Geometry];
+/// Which of a frame's axes are turned over: none, or two of the three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    None,
+    AboutFirst,
+    AboutSecond,
+    AboutThird,
+}
+
+impl Turn {
+    pub const ALL: [Turn; 4] = [
+        Turn::None,
+        Turn::AboutFirst,
+        Turn::AboutSecond,
+        Turn::AboutThird,
+    ];
+
+    fn turned_axes(self) -> [bool; 3] {
+        match self {
+            Turn::None => [false, false, false],
+            Turn::AboutFirst => [false, true, true],
+            Turn::AboutSecond => [true, false, true],
+            Turn::AboutThird => [true, true, false],
+        }
+    }
 }
 
 /// Distinct addresses without which a mark of 48 bits cannot be read: a key owns a quarter, and perfect agreement of
-/// n addresses of equal weight gives ln p = -n + 48 ln 2 + ln 12, which must pass ln 1e-9.
+/// n addresses of equal weight gives ln p = -n + 48 ln 2 + ln 20, which must pass ln 1e-9.
 pub const NEEDED_ADDRESSES: usize = 228;
 
-/// Below so many distinct addresses by connectivity, the embedder takes addresses by geometry.
+/// Below so many distinct addresses of one kind, the embedder looks at the next.
 const FEW_ADDRESSES: usize = 300;
 
-/// The kind of address that an embedder takes, with the number of distinct addresses it has to give.
+/// Side of a cell, in units of the frame: about 1.3 % of the diagonal. Of a regular mesh, quantization to 12 bits puts 3 % of
+/// the vertices into another cell.
+const CELL: f64 = 0.06;
+
+/// Frames whose axes are less distinct are not used: rounding would turn them.
+const LEAST_DISTINCTNESS: f64 = 0.01;
+
+/// The kind of address that an embedder takes, with the number of distinct addresses it has to give: the first that has
+/// enough, for each survives more than the next; else that with most.
 pub fn choose(
+    mesh: &Mesh,
     by_connectivity: &[u64],
     by_geometry: &[u64],
     usable: &[u32],
 ) -> (AddressKind, usize) {
-    let (connectivity, geometry) = (
-        num_distinct(by_connectivity, usable),
-        num_distinct(by_geometry, usable),
-    );
-    if connectivity >= FEW_ADDRESSES || connectivity >= geometry {
-        (AddressKind::Connectivity, connectivity)
-    } else {
-        (AddressKind::Geometry, geometry)
+    let connectivity = num_distinct(by_connectivity, usable);
+    if connectivity >= FEW_ADDRESSES {
+        return (AddressKind::Connectivity, connectivity);
     }
+    let geometry = num_distinct(by_geometry, usable);
+    if geometry >= FEW_ADDRESSES {
+        return (AddressKind::Geometry, geometry);
+    }
+    let pose = Pose::of(mesh).filter(|pose| pose.distinctness() >= LEAST_DISTINCTNESS);
+    let cells = pose.map_or(Vec::new(), |pose| cells(&mesh.positions, &pose));
+    let by_position: Vec<u64> = cells
+        .iter()
+        .map(|&cell| by_position(cell, Turn::None))
+        .collect();
+    let position = if by_position.is_empty() {
+        0
+    } else {
+        num_distinct(&by_position, usable)
+    };
+    let kinds = [
+        (AddressKind::Connectivity, connectivity),
+        (AddressKind::Geometry, geometry),
+        (AddressKind::Position(Turn::None), position),
+    ];
+    kinds
+        .into_iter()
+        .rev()
+        .max_by_key(|&(_, count)| count)
+        .unwrap_or(kinds[0])
 }
 
 fn num_distinct(addresses: &[u64], usable: &[u32]) -> usize {
@@ -100,6 +156,25 @@ pub fn by_geometry(
             mix(packed.wrapping_add(12345))
         })
         .collect()
+}
+
+/// A cell of a frame, by its number along each axis.
+pub type Cell = [i16; 3];
+
+/// The cells of V positions.
+pub fn cells(positions: &[DVec3], pose: &Pose) -> Vec<Cell> {
+    let number = |coordinate: f64| (coordinate / CELL).floor().clamp(-32000.0, 32000.0) as i16;
+    positions
+        .iter()
+        .map(|&p| pose.canonical(p).to_array().map(number))
+        .collect()
+}
+
+/// The address of a cell, seen in a turned frame.
+pub fn by_position(cell: Cell, turn: Turn) -> u64 {
+    let numbers = cell.into_iter().zip(turn.turned_axes());
+    let seen = numbers.map(|(number, turned)| if turned { -number - 1 } else { number });
+    mix(seen.fold(54321, |hash, number| mix(hash).wrapping_add(number as u64)))
 }
 
 /// The bin of a ratio's binary logarithm, 12 to 1012; 512 for ratios that are no number.

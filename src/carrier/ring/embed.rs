@@ -5,11 +5,12 @@
 //! their lattice get almost no weight and are given up. Least squares without those weights reaches a lower agreement at
 //! the same RMS. O(rounds * CG steps * rings).
 
-use super::address::{self, AddressKind, NEEDED_ADDRESSES};
+use super::address::{self, AddressKind, NEEDED_ADDRESSES, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Owned, Ownership, STEP};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
-use crate::geometry::{diagonal, vertex_normals};
+use crate::geometry::{Pose, diagonal, vertex_normals};
+use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -35,7 +36,8 @@ pub fn embed(
     let features = Features::new(positions, &neighbourhoods);
     let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
     let by_geometry = address::by_geometry(positions, &neighbourhoods, &features);
-    let (kind, available) = address::choose(&by_connectivity, &by_geometry, &features.usable);
+    let (kind, available) =
+        address::choose(host.mesh, &by_connectivity, &by_geometry, &features.usable);
     if available < NEEDED_ADDRESSES {
         return Err(CarrierError::TooFewAddresses {
             carrier: Carrier::Ring,
@@ -47,6 +49,7 @@ pub fn embed(
     }
 
     let normals = vertex_normals(host.mesh);
+    let pose = Pose::of(host.mesh);
     let limit = host.rms_rel * diagonal(positions);
     let ownership = Ownership::of(mark.key);
     let linear = Linearization::new(&neighbourhoods, features, &normals, &host.admissible.fixed);
@@ -62,6 +65,9 @@ pub fn embed(
         let addresses = match kind {
             AddressKind::Connectivity => &by_connectivity,
             AddressKind::Geometry => &address::by_geometry(&moved, &neighbourhoods, &now),
+            AddressKind::Position(turn) => {
+                &by_position(&host.mesh.with_positions(moved), pose.as_ref(), turn)
+            }
         };
         let along: Vec<f64> = displacement
             .iter()
@@ -69,7 +75,7 @@ pub fn embed(
             .map(|(d, n)| d.dot(*n))
             .collect();
         let goals = now.usable.iter().filter_map(|&vertex| {
-            let owned = ownership.get(addresses[vertex as usize])?;
+            let owned = ownership.get(*addresses.get(vertex as usize)?)?;
             Some(linear.goal(
                 vertex as usize,
                 now.offsets[vertex as usize],
@@ -89,6 +95,18 @@ pub fn embed(
     }
     step(progress, Stage::Embed, 1.0)?;
     Ok(displacement)
+}
+
+/// Addresses by position, in the mesh's own frame with its axes as they were in the host's.
+fn by_position(mesh: &Mesh, host: Option<&Pose>, turn: Turn) -> Vec<u64> {
+    let pose = Pose::of(mesh)
+        .zip(host)
+        .map(|(pose, host)| pose.aligned_with(host));
+    let cells = pose.map_or(Vec::new(), |pose| address::cells(&mesh.positions, &pose));
+    cells
+        .into_iter()
+        .map(|cell| address::by_position(cell, turn))
+        .collect()
 }
 
 fn scale_to_rms(displacement: &mut [DVec3], limit: f64) {

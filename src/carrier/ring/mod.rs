@@ -5,6 +5,9 @@
 //! pose to find and no order to keep: what is left of a model after cropping still says where each symbol belongs. The key
 //! owns a quarter of the addresses; two owners who mark one model collide on a sixteenth of them, and neither loses theirs.
 //!
+//! Regular and small meshes, whose neighbourhoods look alike, are addressed by the place of a vertex in the model's own frame
+//! instead: that survives re-export and quantization, but no crop.
+//!
 //! Survives what keeps connectivity: crops, parts taken, reordering, similarities, quantization to 14 to 11 bits, and, for
 //! flat rings, affine maps. Dies with connectivity: remeshing, simplification beyond a tenth, subdivision, smoothing.
 //!

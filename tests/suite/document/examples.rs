@@ -310,9 +310,28 @@ fn bounds_of_integers_are_the_stored_integers() {
     };
     let position = builder.positions(0, layout, &[[-32767.0, 5.0, 6.0], [32767.0, 0.0, 1.0]]);
     builder.mesh(&[primitive(position, None, 0)]);
+    builder.accessors[0] = builder.accessors[0].replace("[32767,5,6]", "[32767.0,5,6]");
     let mut document = read(&builder);
     move_first(&mut document, 0, [-0.5, 1.0, 0.0]).expect("a movable position");
-    assert!(text(&document).contains(r#""min":[-16384,0,0],"max":[32767,32767,1]"#));
+    assert!(text(&document).contains(r#""min":[-16384,0,0],"max":[32767.0,32767,1]"#));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn bounds_of_data_that_is_not_finite_stay() {
+    let mut builder = GltfBuilder::new(Packing::External);
+    let points = [TRIANGLE[0], TRIANGLE[1], [0.0, f64::INFINITY, 0.0]];
+    let all = builder.positions(0, Layout::F32, &points);
+    let finite = builder.positions_at(0, 0, Layout::F32, &points[..2]);
+    builder.mesh(&[primitive(all, None, 0), primitive(finite, None, 0)]);
+    builder.accessors[all] = builder.accessors[all].replace("[1,inf,0]", "[1,9,0]");
+    let mut document = read(&builder);
+    move_first(&mut document, finite, [2.0, 2.0, -2.0]).expect("a movable position");
+    let text = text(&document);
+    assert!(text.contains(r#""min":[0,0,-2.0],"max":[1,9,0]"#), "{text}");
+    assert!(
+        text.contains(r#""min":[1.0,0,-2.0],"max":[2.0,2.0,0]"#),
+        "{text}"
+    );
 }
 
 #[wasm_bindgen_test(unsupported = test)]

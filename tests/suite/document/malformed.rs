@@ -352,6 +352,18 @@ fn malformed_json_is_refused() {
         ),
         (
             r#""POSITION":0"#,
+            r#""POSITION":0,"_A/B~":3"#,
+            "document.bad-index",
+            Some("/meshes/0/primitives/0/attributes/_A~1B~0"),
+        ),
+        (
+            r#""POSITION":0"#,
+            r#""POSITION":0,"_A/B~":"3""#,
+            "document.bad-json",
+            Some("/meshes/0/primitives/0/attributes/_A~1B~0"),
+        ),
+        (
+            r#""POSITION":0"#,
             r#""POSITION":1"#,
             "document.bad-accessor",
             Some("/accessors/1"),
@@ -549,6 +561,18 @@ fn malformed_numbers_in_buffers_are_refused() {
             Some("/accessors/2/sparse/indices"),
         );
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn sparse_positions_are_checked_before_anything_is_given_out() {
+    let Model { bytes, mut files } = sound().build();
+    let buffer = files.get_mut("part 0.bin").expect("the buffer");
+    buffer[104..106].copy_from_slice(&9_u16.to_le_bytes());
+    let error = Document::read(&bytes, &files).map(|_| ());
+    assert_eq!(
+        error.map_err(|error| error.code()),
+        Err("document.bad-accessor")
+    );
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -1,0 +1,118 @@
+//! The canonical frame of a surface, from its area moments: what stays when a model is moved, turned or scaled.
+//!
+//! Moments are integrals over the surface, exact for triangles, so tessellation does not matter. O(F).
+
+use crate::mesh::Mesh;
+use glam::{DMat3, DVec3};
+
+/// The frame of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Area centroid, in scene units.
+    pub centre: DVec3,
+    /// Square root of the trace of the area covariance, in scene units.
+    pub size: f64,
+    /// Principal axes as columns, in decreasing order of spread, right-handed. Their signs are arbitrary: turning two of
+    /// them over gives as good a frame.
+    pub axes: DMat3,
+    /// Share of each axis in the trace, decreasing; together 1.
+    pub spreads: DVec3,
+}
+
+impl Pose {
+    /// The pose of a mesh; `None` without area.
+    pub fn of(mesh: &Mesh) -> Option<Pose> {
+        let (mut total, mut first) = (0.0, DVec3::ZERO);
+        for (area, corners) in areas(mesh) {
+            total += area;
+            first += (corners[0] + corners[1] + corners[2]) * (area / 3.0);
+        }
+        let centre = first / total;
+        let mut covariance = DMat3::ZERO;
+        for (area, corners) in areas(mesh) {
+            let [p, q, r] = corners.map(|corner| corner - centre);
+            let sum = p + q + r;
+            let moment = [sum, p, q, r].into_iter().map(outer).sum::<DMat3>();
+            covariance += moment * (area / (12.0 * total));
+        }
+        let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+        if !(trace > 0.0 && trace.is_finite()) {
+            return None;
+        }
+        let (spreads, axes) = eigen(covariance * (1.0 / trace));
+        Some(Pose {
+            centre,
+            size: trace.sqrt(),
+            axes,
+            spreads,
+        })
+    }
+
+    /// The same frame with the signs of its axes nearest to another's.
+    pub fn aligned_with(self, other: &Pose) -> Pose {
+        let sign = |axis: DVec3, other: DVec3| if axis.dot(other) < 0.0 { -axis } else { axis };
+        let (first, second) = (
+            sign(self.axes.x_axis, other.axes.x_axis),
+            sign(self.axes.y_axis, other.axes.y_axis),
+        );
+        Pose {
+            axes: DMat3::from_cols(first, second, first.cross(second)),
+            ..self
+        }
+    }
+
+    /// The smallest relative difference between two successive spreads, 0 to 1: 0 for surfaces of revolution, whose axes
+    /// are not determined.
+    pub fn distinctness(&self) -> f64 {
+        let between = |a: f64, b: f64| if a > 0.0 { (a - b) / (a + b) } else { 0.0 };
+        between(self.spreads.x, self.spreads.y).min(between(self.spreads.y, self.spreads.z))
+    }
+
+    /// A point in the frame: in units of `size`, along the axes.
+    pub fn canonical(&self, point: DVec3) -> DVec3 {
+        self.axes.transpose() * (point - self.centre) / self.size
+    }
+}
+
+fn areas(mesh: &Mesh) -> impl Iterator<Item = (f64, [DVec3; 3])> {
+    mesh.triangles.iter().map(|&triangle| {
+        let [a, b, c] = mesh.corners(triangle);
+        ((b - a).cross(c - a).length() * 0.5, [a, b, c])
+    })
+}
+
+fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+/// Eigenvalues in decreasing order and a right-handed basis of eigenvectors of a symmetric matrix, by Jacobi's cyclic
+/// rotations (Golub and Van Loan, Matrix Computations, 8.5).
+fn eigen(matrix: DMat3) -> (DVec3, DMat3) {
+    let mut a = matrix.to_cols_array_2d();
+    let mut v = DMat3::IDENTITY.to_cols_array_2d();
+    for _ in 0..12 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+            let t = tau.signum() / (tau.abs() + (1.0 + tau * tau).sqrt());
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let s = t * c;
+            for row in &mut a {
+                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+            }
+            for k in 0..3 {
+                (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+                (v[p][k], v[q][k]) = (c * v[p][k] - s * v[q][k], s * v[p][k] + c * v[q][k]);
+            }
+        }
+    }
+    let mut pairs = [0, 1, 2].map(|i| (a[i][i], DVec3::from_array(v[i])));
+    pairs.sort_by(|x, y| y.0.total_cmp(&x.0));
+    let [(x, first), (y, second), (z, _)] = pairs;
+    (
+        DVec3::new(x, y, z),
+        DMat3::from_cols(first, second, first.cross(second)),
+    )
+}

@@ -1,0 +1,84 @@
+// Times the command line and the module in Chromium by turns, and writes docs/PERFORMANCE.md. `cargo xtask bench` builds
+// what is measured and calls this.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { parseArgs } from "node:util";
+import * as meshmark from "meshmark";
+import { glbFromObj, sharedModel } from "../tests/support.mjs";
+import { startChromium } from "./chromium.mjs";
+import { prepareNative } from "./native.mjs";
+import { markdown } from "./report.mjs";
+
+const OWNER = "Bench Owner";
+const PASSPHRASE = "a passphrase for benchmarks only";
+const TAG = "BENCH";
+
+const { values: options } = parseArgs({
+  options: {
+    runs: { type: "string" },
+    cli: { type: "string" },
+    module: { type: "string" },
+    "gzip-budget": { type: "string" },
+    "native-rustc": { type: "string" },
+    "wasm-rustc": { type: "string" },
+    output: { type: "string" },
+  },
+});
+
+await meshmark.init();
+const host = hostModel();
+const key = meshmark.deriveKey(OWNER, PASSPHRASE);
+const { model: marked, report } = meshmark.embed(host.bytes, undefined, TAG, key);
+const work = {
+  key: { owner: OWNER, passphrase: PASSPHRASE },
+  embed: { model: host.bytes, tag: TAG, key },
+  extract: { model: marked, key },
+};
+
+const native = prepareNative(options.cli, work);
+const chromium = await startChromium(work);
+const runs = [];
+try {
+  for (let run = 1; run <= Number(options.runs); run++) {
+    for (const command of Object.keys(work)) {
+      const [first, again] = await chromium.run(command);
+      const results = { native: native.run(command), first, again };
+      Object.values(results).forEach((result) => assertDone(command, result));
+      runs.push({ command, results });
+    }
+    console.log(`run ${run} of ${options.runs}`);
+  }
+} finally {
+  native.close();
+  await chromium.close();
+}
+
+writeFileSync(
+  options.output,
+  markdown({
+    runs,
+    numRuns: Number(options.runs),
+    module: readFileSync(options.module),
+    gzipBudget: Number(options["gzip-budget"]),
+    host: { name: host.name, bytes: host.bytes.length, vertices: report.vertices, triangles: meshmark.inspect(host.bytes).triangles },
+    rustc: { native: options["native-rustc"], wasm: options["wasm-rustc"] },
+    chromium: chromium.version,
+  }),
+);
+
+/** The bunny, where the development models are beside the repository; else the demo model. */
+function hostModel() {
+  const bunny = sharedModel("obj/stanford-bunny.obj", { skip: console.log });
+  return bunny
+    ? { name: "the Stanford bunny", bytes: glbFromObj(new TextDecoder().decode(bunny)) }
+    : { name: "the generated demo model", bytes: meshmark.demoModel() };
+}
+
+/** Times of work that was not done, or done otherwise, say nothing. */
+function assertDone(command, { sha256, tag }) {
+  if (command === "embed") {
+    assert.equal(sha256, report.markedSha256);
+  } else if (command === "extract") {
+    assert.equal(tag, TAG);
+  }
+}

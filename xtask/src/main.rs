@@ -1,1 +1,61 @@
-fn main() {}
+//! What a developer or CI does with the project: `cargo xtask`. Only std, and no logic of the product.
+
+mod apt;
+mod browser;
+mod debian;
+mod manifest;
+mod npm;
+mod page;
+mod process;
+mod project;
+mod serve;
+mod stamp;
+mod steps;
+mod test;
+mod toolchain;
+mod tools;
+mod wasm;
+
+use std::process::ExitCode;
+
+use process::Failure;
+use steps::Steps;
+
+const USAGE: &str = "\
+cargo xtask build                 the wasm module, for the npm package
+cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the next free one
+cargo xtask test                  every check there is
+
+Each installs what it needs and is missing.";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let mut steps = Steps::default();
+    let result = match arguments[..] {
+        ["build"] => wasm::build(&mut steps),
+        ["serve"] => serve::serve(&mut steps, serve::DEFAULT_PORT),
+        ["serve", "--port", port] => port
+            .parse()
+            .map_err(|_| {
+                Failure::new(
+                    format!("{port} is not a port"),
+                    "give a number from 0 to 65535",
+                )
+            })
+            .and_then(|port| serve::serve(&mut steps, port)),
+        ["test"] => test::test(&mut steps),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    steps.print_table();
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("\n{failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -32,7 +32,7 @@ pub fn torus_knot(around: u32, across: u32) -> Mesh {
         .collect();
     Mesh {
         positions,
-        triangles: irregular_quads(around, across, true),
+        triangles: irregular_quads(around, across, |i, j| i % around * across + j % across),
     }
 }
 
@@ -54,7 +54,7 @@ pub fn planet(rings: u32, sectors: u32) -> Mesh {
     positions.extend([DVec3::Z, DVec3::NEG_Z]);
     let positions = positions.into_iter().map(|d| d * radius(d)).collect();
     let (north, south) = (rings * sectors, rings * sectors + 1);
-    let mut triangles = irregular_quads(rings, sectors, false);
+    let mut triangles = irregular_quads(rings - 1, sectors, |i, j| i * sectors + j % sectors);
     for j in 0..sectors {
         let next = (j + 1) % sectors;
         let last = (rings - 1) * sectors;
@@ -81,34 +81,18 @@ pub fn terrain(cells: u32) -> Mesh {
     let positions = (0..=cells)
         .flat_map(|i| (0..=cells).map(move |j| position(i, j)))
         .collect();
-    let mut random = Random::new(7);
-    let quads = (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j)));
     let vertex = |i: u32, j: u32| i * (cells + 1) + j;
-    let triangles = quads
-        .flat_map(|(i, j)| {
-            split(
-                [
-                    vertex(i, j),
-                    vertex(i + 1, j),
-                    vertex(i + 1, j + 1),
-                    vertex(i, j + 1),
-                ],
-                &mut random,
-            )
-        })
-        .collect();
     Mesh {
         positions,
-        triangles,
+        triangles: irregular_quads(cells, cells, vertex),
     }
 }
 
-/// The quads of a grid that closes across, and along if `closed`.
-fn irregular_quads(along: u32, across: u32, closed: bool) -> Vec<[u32; 3]> {
+/// The quads of a grid, each split along one of its diagonals at random; `vertex` names the corner of a row and a column.
+fn irregular_quads(rows: u32, columns: u32, vertex: impl Fn(u32, u32) -> u32) -> Vec<[u32; 3]> {
     let mut random = Random::new(1);
-    let vertex = |i: u32, j: u32| i % along * across + j % across;
-    (0..if closed { along } else { along - 1 })
-        .flat_map(|i| (0..across).map(move |j| (i, j)))
+    let quads = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
+    quads
         .flat_map(|(i, j)| {
             split(
                 [

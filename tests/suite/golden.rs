@@ -65,7 +65,7 @@ fn golden_planet() {
 fn golden_terrain() {
     check(
         &glb(&shapes::terrain(40)),
-        ["e69e4e67e7687dc8", "cd61af5f948ca0cc", "4adde0e5897c5359"],
+        ["f23c3019a503a436", "74e8662bf5a65fb9", "1f83010958e7ec0a"],
     );
 }
 
@@ -73,6 +73,6 @@ fn golden_terrain() {
 fn golden_gallery() {
     check(
         &gallery(Packing::Glb),
-        ["2f7fe1c19cf3a651", "a1bf0e1dc6ddfe29", "e9a619b78949563b"],
+        ["c0532eda066f70a0", "9d3193bca5d886f2", "5c81a7599921bad9"],
     );
 }

@@ -194,37 +194,71 @@ impl<'a> Linearization<'a> {
     /// Displacements along the normals, in scene units: minimises the weighted squared distance to the goals plus the
     /// ridge, by conjugate gradients on the normal equations.
     fn solve(&self, goals: &[Goal]) -> Vec<f64> {
-        let rows: Vec<Vec<(usize, f64)>> = goals
-            .iter()
-            .map(|goal| {
-                self.row(goal.vertex)
-                    .map(|(v, c)| (v, c * self.units[v]))
-                    .collect()
-            })
-            .collect();
-        let transpose = |values: &mut dyn Iterator<Item = f64>| {
-            let mut sums = vec![0.0; self.units.len()];
-            for ((row, goal), value) in rows.iter().zip(goals).zip(values) {
-                row.iter()
-                    .for_each(|&(v, coefficient)| sums[v] += coefficient * goal.weight * value);
-            }
-            sums
+        let rows = SparseRows::new(goals.iter().map(|goal| {
+            self.row(goal.vertex)
+                .map(|(v, coefficient)| (v, coefficient * self.units[v]))
+        }));
+        let weighted = |values: &mut dyn Iterator<Item = f64>| {
+            let weights = goals.iter().map(|goal| goal.weight);
+            rows.transposed(
+                weights.zip(values).map(|(weight, value)| weight * value),
+                self.units.len(),
+            )
         };
         let normal = |x: &[f64]| {
-            let mut image = rows
-                .iter()
-                .map(|row| row.iter().map(|&(v, coefficient)| coefficient * x[v]).sum());
-            let mut y = transpose(&mut image);
+            let mut y = weighted(&mut rows.times(x));
             y.iter_mut().zip(x).for_each(|(y, x)| *y += RIDGE * x);
             y
         };
-        let target = transpose(&mut goals.iter().map(|goal| goal.change));
+        let target = weighted(&mut goals.iter().map(|goal| goal.change));
         let scaled = conjugate_gradients(normal, target);
         scaled
             .iter()
             .zip(&self.units)
             .map(|(x, unit)| x * unit)
             .collect()
+    }
+}
+
+/// A sparse matrix by rows.
+struct SparseRows {
+    ends: Vec<usize>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl SparseRows {
+    fn new(rows: impl Iterator<Item = impl Iterator<Item = (usize, f64)>>) -> SparseRows {
+        let (mut ends, mut entries) = (Vec::new(), Vec::new());
+        for row in rows {
+            entries.extend(row.map(|(column, value)| (column as u32, value)));
+            ends.push(entries.len());
+        }
+        SparseRows { ends, entries }
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &[(u32, f64)]> {
+        self.ends.iter().scan(0, |start, &end| {
+            let row = &self.entries[*start..end];
+            *start = end;
+            Some(row)
+        })
+    }
+
+    fn times(&self, x: &[f64]) -> impl Iterator<Item = f64> {
+        self.rows().map(|row| {
+            row.iter()
+                .map(|&(column, value)| value * x[column as usize])
+                .sum()
+        })
+    }
+
+    fn transposed(&self, y: impl Iterator<Item = f64>, num_columns: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; num_columns];
+        for (row, y) in self.rows().zip(y) {
+            row.iter()
+                .for_each(|&(column, value)| sums[column as usize] += value * y);
+        }
+        sums
     }
 }
 

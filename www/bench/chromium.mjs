@@ -3,7 +3,7 @@ import { launch, serve } from "../tests/browser.mjs";
 
 const www = new URL("../", import.meta.url);
 
-/** Starts a browser and a server on loopback for the commands of `work`. */
+/** Starts a browser, and a server on loopback, for the commands of `work`. */
 export async function startChromium(work) {
   const server = await serve(www, { configFile: false, appType: "mpa", build: { outDir: "." } });
   const browser = await launch();
@@ -11,15 +11,11 @@ export async function startChromium(work) {
     version: browser.version(),
     /** The results of the first and of the second call in a new tab. */
     async run(command) {
-      const context = await browser.newContext(); // its own process: no code compiled for another tab is there
+      const context = await browser.newContext(); // a process of its own: no code compiled for another tab is there
       const page = await context.newPage();
       await page.route(`${server.origin}/`, (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>bench</title>" }));
       await page.goto(server.origin);
-      const { model, ...rest } = work[command];
-      if (model) {
-        await page.route(`${server.origin}/model.glb`, (route) => route.fulfill({ body: Buffer.from(model) }));
-      }
-      const results = await page.evaluate(callTwice, { ...rest, command, key: rest.key && [...rest.key], hasModel: Boolean(model) });
+      const results = await page.evaluate(callTwice, { command, ...work[command] });
       await context.close();
       return results;
     },
@@ -31,14 +27,13 @@ export async function startChromium(work) {
 }
 
 /** Runs in the page. */
-async function callTwice({ hasModel, key, ...request }) {
-  const model = hasModel ? new Uint8Array(await (await fetch("/model.glb")).arrayBuffer()) : undefined;
+async function callTwice(request) {
   const worker = new Worker("/bench/worker.mjs", { type: "module" });
   const call = () =>
     new Promise((resolve, reject) => {
-      worker.onmessage = ({ data }) => (data.error ? reject(new Error(data.error)) : resolve(data));
+      worker.onmessage = ({ data }) => (data.error ? reject(data.error) : resolve(data.result));
       worker.onerror = ({ message }) => reject(new Error(message));
-      worker.postMessage({ ...request, model, key: key && new Uint8Array(key) });
+      worker.postMessage(request);
     });
   return [await call(), await call()];
 }

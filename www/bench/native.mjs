@@ -10,9 +10,10 @@ const TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3";
 const DONE = 0;
 const CANNOT_CHECK = 2;
 
-/** Runs the commands of `work` with the program at `cli`, in a temporary folder that `close` removes. */
+/** Runs the commands of `work` with the program at `cli`, in a temporary folder that goes with this process. */
 export function prepareNative(cli, work) {
   const folder = mkdtempSync(join(tmpdir(), "meshmark-bench-"));
+  process.once("exit", () => rmSync(folder, { recursive: true }));
   const file = (name, bytes) => {
     const path = join(folder, name);
     writeFileSync(path, bytes);
@@ -39,7 +40,7 @@ export function prepareNative(cli, work) {
       return { ms: report.ms, tag: report.tag };
     },
   };
-  return { run: (command) => commands[command](), close: () => rmSync(folder, { recursive: true }) };
+  return { run: (command) => commands[command]() };
 }
 
 /** The report, and the milliseconds that the process lived beyond its stages. */

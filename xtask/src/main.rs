@@ -1,6 +1,7 @@
 //! What a developer or CI does with the project: `cargo xtask`. Only std, and no logic of the product.
 
 mod apt;
+mod bench;
 mod browser;
 mod debian;
 mod manifest;
@@ -25,6 +26,7 @@ const USAGE: &str = "\
 cargo xtask build                 the wasm module, for the npm package
 cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the next free one
 cargo xtask test                  every check there is
+cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs
 
 Each installs what it needs and is missing.";
 
@@ -45,6 +47,10 @@ fn main() -> ExitCode {
             })
             .and_then(|port| serve::serve(&mut steps, port)),
         ["test"] => test::test(&mut steps),
+        ["bench"] => bench::bench(&mut steps, bench::DEFAULT_RUNS),
+        ["bench", "--runs", runs] => {
+            bench::parse_runs(runs).and_then(|runs| bench::bench(&mut steps, runs))
+        }
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -1,6 +1,6 @@
 //! What RING measures of a suspect without a key, and how a key reads it.
 
-use super::address::{self, AddressKind, Cell, Turn};
+use super::address::{self, Cell, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Ownership, STEP};
 use crate::carrier::Hypothesis;
@@ -13,15 +13,6 @@ use std::f64::consts::TAU;
 /// Only rings with a smaller feature are read: one hypothesis each. Affine maps leave the flat rings as they are, but not
 /// the frame that positions are seen in.
 const CUTS: [f32; 3] = [f32::INFINITY, 0.12, 0.04];
-
-/// Every way of reading, in a fixed order.
-fn hypotheses() -> impl Iterator<Item = (AddressKind, f32)> {
-    let local = [AddressKind::Connectivity, AddressKind::Geometry];
-    let local = local
-        .into_iter()
-        .flat_map(|kind| CUTS.map(|cut| (kind, cut)));
-    local.chain(Turn::ALL.map(|turn| (AddressKind::Position(turn), f32::INFINITY)))
-}
 
 /// The largest weight of an address. Without a limit the few addresses that thousands of rings share (a vertex of valence 6
 /// among its like) outweigh all others: ln p of the bunny is -1640 to -2800, as the key owns them or not; with it, -3550.
@@ -43,16 +34,6 @@ struct Sample {
     by_geometry: u64,
     cell: Cell,
     offset: f32,
-}
-
-impl Sample {
-    fn address(&self, kind: AddressKind) -> u64 {
-        match kind {
-            AddressKind::Connectivity => self.by_connectivity,
-            AddressKind::Geometry => self.by_geometry,
-            AddressKind::Position(turn) => address::by_position(self.cell, turn),
-        }
-    }
 }
 
 /// All rings of one address: the sum of `exp(2 pi i f / STEP)`, divided by the square root of their number, its length at
@@ -112,10 +93,7 @@ impl Measurement {
     fn from_samples(mut samples: Vec<Sample>) -> Measurement {
         let rank = |s: &Sample| (s.by_connectivity, s.by_geometry, s.cell, s.offset.to_bits());
         samples.sort_unstable_by_key(rank);
-        let phasors: Vec<Phasor> = samples.iter().map(Phasor::new).collect();
-        let sums = hypotheses()
-            .map(|(kind, cut)| sums(&samples, &phasors, kind, cut))
-            .collect();
+        let sums = sums(&samples);
         Measurement { samples, sums }
     }
 
@@ -191,30 +169,85 @@ impl Phasor {
     }
 }
 
-/// The sums by address of one hypothesis. Samples are in a canonical order, and so are the terms of each sum.
-fn sums(samples: &[Sample], phasors: &[Phasor], kind: AddressKind, cut: f32) -> Vec<Sum> {
-    let below = samples
-        .iter()
-        .enumerate()
-        .filter(|(_, sample)| sample.offset.abs() < cut);
-    let mut rings: Vec<(u64, usize)> = below
-        .map(|(index, sample)| (sample.address(kind), index))
-        .collect();
-    rings.sort_unstable();
-    rings
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|group| {
-            let phasors = || group.iter().map(|&(_, index)| &phasors[index]);
-            let (re, im) = phasors().fold((0.0, 0.0), |(re, im), p| (re + p.re, im + p.im));
-            let length = libm::hypot(re, im);
-            let scale = (LIMIT / length).min(1.0 / (group.len() as f64).sqrt());
-            Sum {
-                address: group[0].0,
+/// The sums of all hypotheses: by connectivity and by geometry for each cut, by position for each turn. Samples are in a
+/// canonical order, and so are the terms of each sum.
+fn sums(samples: &[Sample]) -> Vec<Vec<Sum>> {
+    let phasors: Vec<Phasor> = samples.iter().map(Phasor::new).collect();
+    let rings = Rings {
+        samples,
+        phasors: &phasors,
+    };
+    let connectivity = rings.groups(|sample| sample.by_connectivity);
+    let geometry = rings.groups(|sample| sample.by_geometry);
+    let position = rings.groups(|sample| sample.cell);
+    let by_connectivity =
+        CUTS.map(|cut| rings.sums(&connectivity, cut, |sample| sample.by_connectivity));
+    let by_geometry = CUTS.map(|cut| rings.sums(&geometry, cut, |sample| sample.by_geometry));
+    let by_position = Turn::ALL.map(|turn| {
+        rings.sums(&position, f32::INFINITY, |sample| {
+            address::by_position(sample.cell, turn)
+        })
+    });
+    by_connectivity
+        .into_iter()
+        .chain(by_geometry)
+        .chain(by_position)
+        .collect()
+}
+
+struct Rings<'a> {
+    samples: &'a [Sample],
+    phasors: &'a [Phasor],
+}
+
+impl Rings<'_> {
+    /// The samples in groups of an equal key.
+    fn groups<K: Ord>(&self, key: impl Fn(&Sample) -> K) -> Groups {
+        let mut order: Vec<usize> = (0..self.samples.len()).collect();
+        order.sort_by_key(|&index| key(&self.samples[index]));
+        let same = |&a: &usize, &b: &usize| key(&self.samples[a]) == key(&self.samples[b]);
+        let sizes = order.chunk_by(same).map(<[usize]>::len).collect();
+        Groups { order, sizes }
+    }
+
+    /// One sum for each group that has rings with a feature below the cut.
+    fn sums(&self, groups: &Groups, cut: f32, address: impl Fn(&Sample) -> u64) -> Vec<Sum> {
+        let sum = |group: &[usize]| {
+            let below = group
+                .iter()
+                .filter(|&&index| self.samples[index].offset.abs() < cut);
+            let (count, re, im) = below
+                .map(|&index| &self.phasors[index])
+                .fold((0, 0.0, 0.0), |(count, re, im), phasor| {
+                    (count + 1, re + phasor.re, im + phasor.im)
+                });
+            let scale = (LIMIT / libm::hypot(re, im)).min(1.0 / f64::from(count).sqrt());
+            (count > 0).then(|| Sum {
+                address: address(&self.samples[group[0]]),
                 re: re * scale,
                 im: im * scale,
-            }
-        })
-        .collect()
+            })
+        };
+        groups.iter().filter_map(sum).collect()
+    }
+}
+
+/// Indices of samples in the order of a key, and how many of them have each of its values.
+struct Groups {
+    order: Vec<usize>,
+    sizes: Vec<usize>,
+}
+
+impl Groups {
+    fn iter(&self) -> impl Iterator<Item = &[usize]> {
+        self.sizes
+            .iter()
+            .scan(self.order.as_slice(), |rest, &size| {
+                let (group, after) = rest.split_at(size);
+                *rest = after;
+                Some(group)
+            })
+    }
 }
 
 impl Sum {

@@ -1,0 +1,107 @@
+// docs/PERFORMANCE.md: what was measured, in Markdown.
+import { arch, cpus, type } from "node:os";
+import { brotliCompressSync, gzipSync } from "node:zlib";
+
+/** What the commands are called, and their stages in order; `null` is all of them. */
+const COMMANDS = {
+  key: { title: "key derivation", stages: [null] },
+  embed: { title: "embed", stages: ["read", "embed", "write", "measure", "test", null] },
+  extract: { title: "extract", stages: ["read", "measure", "test", null] },
+};
+
+/**
+ * @param samples by command, of every run the results `native`, `first` and `second` with `ms` by stage, the latter two also
+ * with `memoryBytes`
+ */
+export function markdown({ samples, module, gzipBudget, host, rustc, chromium }) {
+  const gzip = gzipSync(module, { level: 9 }).length;
+  return `# Performance
+
+\`cargo xtask bench\` wrote this on ${new Date().toISOString().slice(0, 10)}. For one stage at a time, natively and with statistics: \`cargo bench\`.
+
+## Size of the WebAssembly module
+
+| | bytes |
+|---|--:|
+| as it is | ${count(module.length)} |
+| by gzip, level 9 | ${count(gzip)} |
+| by brotli, level 11 | ${count(brotliCompressSync(module).length)} |
+
+The budget in \`wasm-pack.toml\` is ${count(gzipBudget)} bytes by gzip, of which ${((100 * gzip) / gzipBudget).toFixed(0)} % are used.
+
+## Times
+
+The model is ${host.name}: ${count(host.vertices)} vertices, ${count(host.triangles)} triangles, a .glb of ${count(host.bytes)} bytes. Milliseconds: the median of
+${samples.key.length} runs (least–most). Machines are shared and differ, so the ratios, of the Chromium median to the native one, are what
+these figures are for.
+
+| | native | Chromium, first call | ratio | Chromium, second call | ratio |
+|---|--:|--:|--:|--:|--:|
+${rows(samples, ({ title, stages }, runs) => stages.map((stage) => timesRow(title, stage, runs)))}
+
+* Natively: the command line, a new process for every call. In Chromium: the npm package in a worker, a new tab for every
+  command. During the first call the engine is still compiling the module; the second call is in the same tab. Native and
+  Chromium runs take turns, so that what else the machine does falls on both. Every embedding gave the same bytes, and every
+  extraction the tag.
+* \`embed\` reads its output back: \`read\` is of the host and of the output, \`measure\` and \`test\` are of the output.
+* A stage lasts from its first progress report to the next stage's. So \`test\` of \`embed\` also has the SHA-256 of both files and,
+  natively, the writing of the output; \`test\` of \`extract\` in Chromium also has the evidence's way out of the module and back.
+* Native key derivation is how much longer a process lives with a passphrase than with a key file.
+* Chromium's clock has steps of 0.1 ms.
+
+## Memory of the module
+
+| after the first call of | MiB |
+|---|--:|
+${rows(samples, ({ title }, runs) => [memoryRow(title, runs)])}
+
+WebAssembly memory does not shrink, so this is the most that was needed until then, by a module that did nothing else.
+
+## Where
+
+| | |
+|---|---|
+| processor | ${cpus()[0].model.trim()}, ${cpus().length} cores |
+| system | ${type()}, ${arch()} |
+| native compiler | ${rustc.native} |
+| WebAssembly compiler | ${rustc.wasm} |
+| browser | Chromium ${chromium} |
+`;
+}
+
+function rows(samples, rowsOf) {
+  return Object.entries(COMMANDS)
+    .flatMap(([command, names]) => rowsOf(names, samples[command]))
+    .join("\n");
+}
+
+function timesRow(title, stage, runs) {
+  const times = (where) => statistics(runs.map((run) => milliseconds(run[where].ms, stage)));
+  const [native, first, second] = ["native", "first", "second"].map(times);
+  const ratio = (times) => (times.median / native.median).toFixed(1);
+  const name = stage === null ? `**${title}**` : `${title}: ${stage}`;
+  return `| ${[name, cell(native), cell(first), ratio(first), cell(second), ratio(second)].join(" | ")} |`;
+}
+
+function milliseconds(ms, stage) {
+  return stage === null ? Object.values(ms).reduce((sum, value) => sum + value) : ms[stage];
+}
+
+function statistics(values) {
+  const sorted = values.toSorted((a, b) => a - b);
+  const [low, high] = [sorted[(sorted.length - 1) >> 1], sorted[sorted.length >> 1]];
+  return { median: (low + high) / 2, least: sorted[0], most: sorted.at(-1) };
+}
+
+function cell({ median, least, most }) {
+  return `${median.toFixed(1)} (${least.toFixed(1)}–${most.toFixed(1)})`;
+}
+
+function memoryRow(title, runs) {
+  const bytes = Math.max(...runs.map(({ first }) => first.memoryBytes));
+  return `| ${title} | ${(bytes / 2 ** 20).toFixed(1)} |`;
+}
+
+function count(number) {
+  return number.toLocaleString("en");
+}

@@ -5,6 +5,8 @@
 //! all its instances. Skinned meshes stay as they are modelled (the bind pose). Morph targets are deltas and stay as they
 //! are. Triangles with fewer than three distinct corners are dropped. Only elements that a triangle uses become vertices.
 
+#![deny(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing)]
+
 mod gather;
 mod orbits;
 mod plain;

@@ -5,7 +5,7 @@ use super::uses::uses;
 use crate::document::{Document, DocumentError};
 use crate::mesh::{Admissible, Orbit};
 use glam::DMat3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Relative difference at which two ways to the same displacement count as one.
 const TOLERANCE: f64 = 1e-9;
@@ -18,51 +18,43 @@ type Link = (u32, DMat3);
 pub fn admissible(
     document: &Document,
     placements: &[Placement],
-    num_vertices: usize,
 ) -> Result<Admissible, DocumentError> {
-    let mut fixed = unwritable(document, placements, num_vertices)?;
+    let mut fixed = unwritable(document, placements)?;
     let links = links(document, placements)?;
     let mut orbits = Vec::new();
-    let mut visited = vec![false; if links.is_empty() { 0 } else { num_vertices }];
+    let mut visited = BTreeSet::new();
     for &root in links.keys() {
-        if visited[root as usize] {
+        if visited.contains(&root) {
             continue;
         }
-        match orbit(root, &links, &mut visited) {
-            (members, true) if !members.iter().any(|&(vertex, _)| fixed[vertex as usize]) => {
-                if members.len() > 1 {
-                    orbits.push(Orbit { members });
-                }
-            }
-            (members, _) => members
-                .iter()
-                .for_each(|&(vertex, _)| fixed[vertex as usize] = true),
+        let (members, consistent) = orbit(root, &links);
+        visited.extend(members.iter().map(|&(vertex, _)| vertex));
+        if !consistent || members.iter().any(|(vertex, _)| fixed.contains(vertex)) {
+            fixed.extend(members.iter().map(|&(vertex, _)| vertex));
+        } else if members.len() > 1 {
+            orbits.push(Orbit { members });
         }
     }
-    let fixed = fixed
-        .iter()
-        .zip(0..)
-        .filter(|(fixed, _)| **fixed)
-        .map(|(_, vertex)| vertex)
-        .collect();
-    Ok(Admissible { orbits, fixed })
+    Ok(Admissible {
+        orbits,
+        fixed: fixed.into_iter().collect(),
+    })
 }
 
-/// For each vertex, whether one of its elements cannot be written.
+/// The vertices of which an element cannot be written.
 fn unwritable(
     document: &Document,
     placements: &[Placement],
-    num_vertices: usize,
-) -> Result<Vec<bool>, DocumentError> {
-    let mut fixed = vec![false; num_vertices];
+) -> Result<BTreeSet<u32>, DocumentError> {
+    let mut fixed = BTreeSet::new();
     for placement in placements {
-        let elements = document.fixed_elements(placement.accessor)?;
-        for (element, vertex) in placement.vertices.iter().enumerate() {
-            if let Some(vertex) = vertex {
-                let held = elements.get(element).copied().unwrap_or(true);
-                fixed[*vertex as usize] |= held || placement.to_local.is_none();
-            }
-        }
+        let held = document.fixed_elements(placement.accessor)?;
+        let held = placement
+            .vertices
+            .iter()
+            .zip(held)
+            .filter(|(_, held)| *held || placement.to_local.is_none());
+        fixed.extend(held.filter_map(|(vertex, _)| *vertex));
     }
     Ok(fixed)
 }
@@ -73,48 +65,52 @@ fn links(
     placements: &[Placement],
 ) -> Result<BTreeMap<u32, Vec<Link>>, DocumentError> {
     let mut links: BTreeMap<u32, Vec<Link>> = BTreeMap::new();
+    let linear = |placement: usize| {
+        let placement = placements.get(placement)?;
+        Some((placement.to_world.matrix3, placement.to_local?))
+    };
     for uses in uses(document, placements)?.chunk_by(|a, b| a.slot == b.slot) {
-        let (a, first) = (uses[0].vertex, &placements[uses[0].placement]);
-        for other in &uses[1..] {
-            let (b, other) = (other.vertex, &placements[other.placement]);
-            let (Some(to_first), Some(to_other)) = (first.to_local, other.to_local) else {
+        let Some((first, others)) = uses.split_first() else {
+            continue;
+        };
+        for other in others {
+            let (Some((to_world, to_local)), Some((other_to_world, other_to_local))) =
+                (linear(first.placement), linear(other.placement))
+            else {
                 continue;
             };
             links
-                .entry(a)
+                .entry(first.vertex)
                 .or_default()
-                .push((b, other.to_world.matrix3 * to_first));
+                .push((other.vertex, other_to_world * to_local));
             links
-                .entry(b)
+                .entry(other.vertex)
                 .or_default()
-                .push((a, first.to_world.matrix3 * to_other));
+                .push((first.vertex, to_world * other_to_local));
         }
     }
     Ok(links)
 }
 
-/// All vertices that are linked to a root, and whether their links agree.
-fn orbit(root: u32, links: &BTreeMap<u32, Vec<Link>>, visited: &mut [bool]) -> (Vec<Link>, bool) {
+/// All vertices that are linked to a root, each once, and whether their links agree.
+fn orbit(root: u32, links: &BTreeMap<u32, Vec<Link>>) -> (Vec<Link>, bool) {
     let mut maps = BTreeMap::from([(root, DMat3::IDENTITY)]);
-    let mut members = vec![(root, DMat3::IDENTITY)];
+    let mut open = vec![root];
     let mut consistent = true;
-    let mut next = 0;
-    visited[root as usize] = true;
-    while let Some(&(vertex, map)) = members.get(next) {
-        next += 1;
+    while let Some(vertex) = open.pop() {
+        let map = maps.get(&vertex).copied().unwrap_or_default();
         for &(neighbour, link) in links.get(&vertex).into_iter().flatten() {
             let reached = link * map;
             match maps.get(&neighbour) {
                 Some(known) => consistent &= agree(known, &reached),
                 None => {
                     maps.insert(neighbour, reached);
-                    members.push((neighbour, reached));
-                    visited[neighbour as usize] = true;
+                    open.push(neighbour);
                 }
             }
         }
     }
-    (members, consistent)
+    (maps.into_iter().collect(), consistent)
 }
 
 fn agree(a: &DMat3, b: &DMat3) -> bool {

@@ -4,6 +4,7 @@ use super::uses::uses;
 use super::{Scene, SceneError};
 use crate::document::Document;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 impl Scene {
     /// Displaces the document's elements as V admissible displacements of the vertices say. Each coordinate is rounded to
@@ -13,21 +14,27 @@ impl Scene {
         document: &mut Document,
         displacement: &[DVec3],
     ) -> Result<(), SceneError> {
-        let mut moves: Vec<Vec<(usize, DVec3)>> = vec![Vec::new(); self.placements.len()];
+        let mut moves: BTreeMap<usize, Vec<(usize, DVec3)>> = BTreeMap::new();
         for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
             // The displacement is admissible, so all uses of an element agree about it: the first moves it.
-            let first = uses[0];
-            if let Some(to_local) = self.placements[first.placement].to_local {
-                moves[first.placement].push((
-                    first.element,
-                    to_local * displacement[first.vertex as usize],
-                ));
+            let Some(first) = uses.first() else { continue };
+            let to_local = self
+                .placements
+                .get(first.placement)
+                .and_then(|placement| placement.to_local);
+            if let (Some(to_local), Some(d)) = (to_local, displacement.get(first.vertex as usize)) {
+                moves
+                    .entry(first.placement)
+                    .or_default()
+                    .push((first.element, to_local * *d));
             }
         }
-        for (placement, moves) in self.placements.iter().zip(moves) {
+        for (index, placement) in self.placements.iter().enumerate() {
             let mut positions = document.positions(placement.accessor)?;
-            for (element, d) in moves {
-                positions[element] = (DVec3::from_array(positions[element]) + d).to_array();
+            for (element, d) in moves.remove(&index).unwrap_or_default() {
+                if let Some(position) = positions.get_mut(element) {
+                    *position = (DVec3::from_array(*position) + d).to_array();
+                }
             }
             document.set_positions(placement.accessor, &positions)?;
         }

@@ -30,7 +30,7 @@ export async function useAll(model: Uint8Array, signal: AbortSignal): Promise<st
   const reading = meshmark.extract(meshmark.measure(marked, undefined), key);
   const client = await createClient({ workerUrl: "/worker.js", wasmUrl: new URL("https://a.example/meshmark.wasm") });
   try {
-    await client.embed(model, {}, 7, key, { carriers: ["ring"] }, { signal, onProgress: (stage, fraction) => void [stage, fraction] });
+    await client.embed(model, {}, 7, key, { carriers: ["solid", "ring"] }, { signal, onProgress: (stage, fraction) => void [stage, fraction] });
   } catch (error) {
     return error instanceof MeshmarkError ? error.code : null;
   } finally {

@@ -81,6 +81,32 @@ test("what the module throws is a MeshmarkError with code and path", async () =>
   });
 });
 
+test("a key is Argon2id's of the name and the passphrase, as docs/FORMAT.md says", async () => {
+  await meshmark.init();
+  const key = Buffer.from(meshmark.deriveKey("Ada", "correct horse battery staple"));
+  assert.equal(key.toString("hex"), "1e880652b5b6d7b3009828ff54ee8de813fb064b83b8b4311e9721e4505dd825");
+});
+
+test("a key does not depend on how its name and passphrase were typed", async () => {
+  await meshmark.init();
+  const typed = meshmark.deriveKey("Zo\u00eb", "caf\u00e9 \uff11");
+  assert.deepEqual(meshmark.deriveKey(" Zoe\u0308 ", "cafe\u0301 1"), typed);
+  assert.notDeepEqual(meshmark.deriveKey("Zoe", "cafe 1"), typed);
+});
+
+test("every carrier speaks, in its order, and a carrier alone leaves the other silent", async () => {
+  await meshmark.init();
+  const key = new Uint8Array(32).fill(5);
+  const names = (list) => list.map(({ name }) => name);
+  const host = meshmark.demoModel();
+  assert.deepEqual(names(meshmark.inspect(host).capacity), ["solid", "ring"]);
+  const { readBack } = meshmark.embed(host, undefined, "ALONE", key, { carriers: ["ring"] }).report;
+  assert.deepEqual(names(readBack.carriers), ["solid", "ring"]);
+  assert.deepEqual(readBack.carriers.map(({ tag }) => tag), [null, "ALONE"]);
+  const none = () => meshmark.embed(host, undefined, "ALONE", key, { carriers: [] });
+  assert.throws(none, (error) => error instanceof MeshmarkError && error.code === "options.no-carrier");
+});
+
 test("a key of another length is refused", async () => {
   await meshmark.init();
   const isKeyError = (error) => error instanceof MeshmarkError && error.code.startsWith("key.");

@@ -26,6 +26,8 @@ f 1 2 6 5
 f 2 3 7 6
 f 3 4 8 7
 f 4 1 5 8`;
+/** The cube as a thin rod: neither its shape nor its connectivity can hold a mark. */
+const ROD = CUBE.replaceAll(/^v (\d) (\d) (\d)$/gm, (_, x, y, z) => `v ${x} ${y / 100} ${z / 100}`);
 const SLOW = 120_000;
 
 const pictures = new URL("test-output/", repository);
@@ -218,11 +220,56 @@ test("a truncated file is refused in words, and a good one afterwards is not", a
 });
 
 test("a model that is too small is told so before and after it is tried, in numbers", async () => {
+  const offers = (home) => `its ${home} offers \\d+ of the \\d+ places that are needed`;
+  await dropped(onDisk("rod.glb", glbFromObj(ROD)));
+  await view().getByText(new RegExp(`too small or too regular to hold a mark: ${offers("shape")}, ${offers("connectivity")}`)).waitFor();
+  await mark();
+  assert.match(await headline(), /^Cannot mark: .*too small or too regular.*\d/);
+  await result().getByText("carrier.too-few-addresses").waitFor();
+  await picture("too-small");
+
   await dropped(onDisk("cube.glb", glbFromObj(CUBE)));
-  await view().getByText(/too small or too regular to hold a mark: it has \d+ distinct places where \d+ are needed/).waitFor();
+  await view().getByText(new RegExp(`too small or too regular to hold a mark: ${offers("shape")}, ${offers("connectivity")}`)).waitFor();
   await mark();
   assert.match(await headline(), /^Cannot mark: .*\d/);
-  await picture("too-small");
+});
+
+test("the carriers can be chosen, and one always stays", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await view().getByText("Advanced").click();
+  const [shape, connectivity] = ["Shape (SOLID)", "Connectivity (RING)"].map((name) => page.getByRole("checkbox", { name }));
+  assert.ok((await shape.isChecked()) && (await connectivity.isChecked()));
+  await connectivity.uncheck();
+  assert.ok(await shape.isDisabled());
+  await connectivity.check();
+  assert.ok(await shape.isEnabled());
+  await shape.uncheck();
+  assert.ok(await connectivity.isDisabled());
+  await picture("advanced");
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+  const { report } = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8"));
+  assert.equal(await result().locator("dl div", { hasText: "Held by" }).locator("dd").textContent(), "Connectivity (RING)");
+  assert.deepEqual(report.readBack.carriers.map(({ name, tag }) => [name, tag]), [["solid", null], ["ring", TAG]]);
+});
+
+test("each carrier's part is told by its name, with what it survives, in both views", async () => {
+  await dropped(onDisk("two.glb", meshmark.demoModel()));
+  const read = async () => {
+    await result().locator("summary").click();
+    assert.deepEqual(await result().locator("tbody th").allTextContents(), ["Shape (SOLID)", "Connectivity (RING)"]);
+    const hints = await result().locator(".carriers .hint").allTextContents();
+    assert.match(hints.join(" "), /Shape \(SOLID\): Survives noise.* Connectivity \(RING\): Survives cropping/);
+  };
+  await mark();
+  await read();
+  await result().screenshot({ path: fileURLToPath(new URL("details-protect.png", pictures)) });
+  await page.getByRole("button", { name: "Check this copy" }).click();
+  await facts().getByText("two.marked.glb").waitFor();
+  await page.getByRole("button", { name: "Check this model" }).click();
+  await result().waitFor();
+  await read();
+  await result().screenshot({ path: fileURLToPath(new URL("details-check.png", pictures)) });
 });
 
 test("compressed geometry is refused in words", async () => {

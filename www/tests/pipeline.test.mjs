@@ -28,14 +28,19 @@ for (const [path, read] of [
     }
     const host = read(file);
     const { model: marked, report } = embed(host, undefined, TAG, key);
-    t.diagnostic(`RMS ${(report.rmsRel * 100).toFixed(4)} % of the diagonal, ln p ${report.readBack.lnP.toFixed(1)} as marked`);
+    t.diagnostic(`RMS ${(report.rmsRel * 100).toFixed(4)} % of the diagonal; as marked ${bounds(report.readBack)}`);
     await assertNoNewErrors(host, marked);
     const optimised = await optimise(marked);
     const reading = extract(measure(optimised, undefined), key);
-    t.diagnostic(`ln p ${reading.lnP.toFixed(1)} after the optimiser`);
+    t.diagnostic(`after the optimiser ${bounds(reading)}`);
     assert.equal(reading.verdict, "found", reading.reason ?? "");
     assert.equal(reading.tag, TAG);
   });
+}
+
+/** ln p, over all carriers and of each. */
+function bounds({ lnP, carriers }) {
+  return `ln p ${lnP.toFixed(1)} (${carriers.map((carrier) => `${carrier.name} ${carrier.lnP.toFixed(1)}`).join(", ")})`;
 }
 
 async function optimise(model) {

@@ -1,7 +1,7 @@
 /** Results in words first, then numbers, then details. */
 import type { CarrierReading, Extraction, Verdict } from "meshmark";
 import { announce, h } from "./dom";
-import { count, odds, problem } from "./words";
+import { CARRIERS, count, odds, problem } from "./words";
 
 /** A result card: a headline, sentences, and whatever follows. */
 export function card(verdict: Verdict | "error", headline: string | Node[], sentences: string[], ...rest: Node[]): HTMLElement {
@@ -53,20 +53,22 @@ export function readingRows(reading: Extraction): [string, Node | string][] {
   ];
 }
 
-/** The carriers, one a row. */
+/** The carriers, one a row, and what each survives. */
 export function carrierTable(carriers: CarrierReading[]): HTMLElement {
   const row = (carrier: CarrierReading) =>
     h(
       "tr",
       {},
-      h("th", { scope: "row" }, carrier.name),
+      h("th", { scope: "row" }, CARRIERS[carrier.name].name),
       h("td", {}, carrier.tag ?? "–"),
       h("td", {}, oddsOf(carrier.lnP)),
       h("td", {}, `${Math.round(carrier.agreement * 100)} %`),
       h("td", {}, `${count(carrier.ownedAddresses)} of ${count(carrier.addresses)}`),
     );
-  const heads = ["Carrier", "Tag", "Chance at most", "Agreement", "Places"].map((text) => h("th", { scope: "col" }, text));
-  return h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...carriers.map(row))));
+  const heads = ["Carrier", "Tag", "Chance at most", "Agrees", "Places"].map((text) => h("th", { scope: "col" }, text));
+  const table = h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...carriers.map(row)));
+  const hints = carriers.map(({ name }) => h("p", { class: "hint" }, h("strong", {}, CARRIERS[name].name), `: ${CARRIERS[name].survives}`));
+  return h("div", { class: "carriers" }, h("div", { class: "scroll" }, table), ...hints);
 }
 
 export function details(summary: string, ...content: Node[]): HTMLElement {

@@ -1,5 +1,5 @@
 /** Protect: a model and a key in, a marked copy out. */
-import type { Embedding, EmbedReport, Inspection, Strength } from "meshmark";
+import type { Carrier, EmbedOptions, Embedding, EmbedReport, Inspection, Strength } from "meshmark";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keyMaker, type KeyMaker } from "./key-form";
@@ -10,7 +10,7 @@ import { save, saveJson } from "./save";
 import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
 import { View } from "./view";
-import { count, percent, significant } from "./words";
+import { CARRIERS, count, percent, significant } from "./words";
 
 type Preset = Extract<Strength, string>;
 
@@ -23,6 +23,7 @@ const STRENGTHS: Record<Preset, string> = {
 export class Protect extends View {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
+  readonly #carriers = [...find("#carriers").querySelectorAll("input")];
 
   /** @param onCheck is given the marked copy, to check it as anybody would */
   constructor(
@@ -35,13 +36,39 @@ export class Protect extends View {
     const describe = () => (hint.textContent = STRENGTHS[this.#strength.value as Preset]);
     this.#strength.addEventListener("change", describe);
     describe();
+    for (const box of this.#carriers) {
+      find(`#${box.id}-hint`).textContent = CARRIERS[box.value as Carrier].survives;
+      box.addEventListener("change", () => this.#keepOne());
+    }
+    this.#keepOne(); // a reload may bring back what was chosen before
   }
 
   protected override foresee({ capacity }: Inspection): HTMLElement | null {
-    const [best] = capacity.toSorted((a, b) => b.addresses / b.neededAddresses - a.addresses / a.neededAddresses);
-    return best && best.addresses < best.neededAddresses
-      ? note(`This model is too small or too regular to hold a mark: it has ${count(best.addresses)} distinct places where ${count(best.neededAddresses)} are needed.`)
-      : null;
+    const short = capacity.filter(({ addresses, neededAddresses }) => addresses < neededAddresses);
+    const lacking = short
+      .map(({ name, addresses, neededAddresses }) => `its ${CARRIERS[name].home} offers ${count(addresses)} of the ${count(neededAddresses)} places that are needed`)
+      .join(", ");
+    const [enough] = capacity.filter((carrier) => !short.includes(carrier));
+    if (short.length === 0) {
+      return null;
+    }
+    return note(
+      enough
+        ? `At most the ${CARRIERS[enough.name].home} of this model can hold a mark: ${lacking}.`
+        : `This model is too small or too regular to hold a mark: ${lacking}.`,
+    );
+  }
+
+  /** A mark needs a carrier: the last one cannot be taken away. */
+  #keepOne(): void {
+    const chosen = this.#chosenBoxes();
+    for (const box of this.#carriers) {
+      box.disabled = chosen.length === 1 && chosen[0] === box;
+    }
+  }
+
+  #chosenBoxes(): HTMLInputElement[] {
+    return this.#carriers.filter((box) => box.checked);
   }
 
   protected async submit(): Promise<void> {
@@ -52,9 +79,13 @@ export class Protect extends View {
     if (!model) {
       return;
     }
-    const [tag, strength, key] = [this.#tag.value, this.#strength.value as Preset, keyMaker()];
+    const options: EmbedOptions = {
+      strength: this.#strength.value as Preset,
+      carriers: this.#chosenBoxes().map((box) => box.value as Carrier),
+    };
+    const [tag, key] = [this.#tag.value, keyMaker()];
     await this.run(async (controller) => {
-      const embedding = await runTask(this.outcome, controller, (progress) => embed(model, tag, strength, key, progress));
+      const embedding = await runTask(this.outcome, controller, (progress) => embed(model, tag, key, options, progress));
       if (embedding && model === this.model) {
         await this.#present(model, embedding);
       }
@@ -85,6 +116,7 @@ export class Protect extends View {
       ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
       numbers([
         ...readingRows(readBack),
+        ["Held by", holders(report)],
         ["Displacement, RMS", displacement(report.rmsRel, report.diagonal)],
         ["Displacement, largest", displacement(report.maxRel, report.diagonal)],
         ["Vertices moved", `${count(report.movedVertices)} of ${count(report.vertices)}`],
@@ -107,15 +139,21 @@ export class Protect extends View {
   }
 }
 
-async function embed(model: Model, tag: string, strength: Preset, makeKey: KeyMaker, progress: Progress): Promise<Embedding> {
+async function embed(model: Model, tag: string, makeKey: KeyMaker, options: EmbedOptions, progress: Progress): Promise<Embedding> {
   const client = await engine;
   const key = await makeKey(client, progress);
   progress.stage("read");
   try {
-    return await client.embed(model.bytes, model.buffers, tag, key, { strength }, progress);
+    return await client.embed(model.bytes, model.buffers, tag, key, options, progress);
   } finally {
     key.fill(0);
   }
+}
+
+/** The carriers from which the mark was read back; another one may be too weak in this model. */
+function holders({ number, readBack }: EmbedReport): string {
+  const holding = readBack.carriers.filter((carrier) => carrier.number === number);
+  return holding.map(({ name }) => CARRIERS[name].name).join(", ");
 }
 
 /** In the model's own units, and as a fraction of its size. */

@@ -1,5 +1,5 @@
 /** Numbers and outcomes in words. */
-import type { Stage, Verdict } from "meshmark";
+import type { Carrier, Stage, Verdict } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
 
 export const VERDICTS: Record<Verdict, string> = {
@@ -7,6 +7,12 @@ export const VERDICTS: Record<Verdict, string> = {
   partial: "A mark fits partly",
   none: "No evidence of this key",
   "cannot-check": "Cannot check",
+};
+
+/** Each carrier's name, where its symbols live, and what they survive there. */
+export const CARRIERS: Record<Carrier, { name: string; home: string; survives: string }> = {
+  solid: { name: "Shape (SOLID)", home: "shape", survives: "Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
+  ring: { name: "Connectivity (RING)", home: "connectivity", survives: "Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
 };
 
 export const STAGES: Record<Stage | "key", string> = {

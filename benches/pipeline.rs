@@ -8,7 +8,7 @@ use meshmark::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Evidence, Files, Key, Payload, embed, extract, ignore};
 
 fn pipeline(criterion: &mut Criterion) {
-    let mesh = shapes::planet(156, 223);
+    let mesh = shapes::asteroid(156, 223);
     let host = to_glb(&mesh);
     let files = Files::new();
     let key = Key::from_bytes(&[1; Key::BYTES]).expect("32 bytes");

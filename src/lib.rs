@@ -33,6 +33,7 @@ pub mod evidence;
 pub mod geometry;
 pub mod key;
 pub mod mesh;
+mod order;
 mod progress;
 mod random;
 pub mod scene;
@@ -54,5 +55,5 @@ pub use watermark::{
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.
 pub fn demo_model() -> Vec<u8> {
-    scene::to_glb(&mesh::shapes::torus_knot(400, 30))
+    scene::to_glb(&mesh::shapes::asteroid(100, 120))
 }

@@ -25,6 +25,11 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// Nearly normal, of mean 0 and variance 1: the sum of twelve uniform numbers.
+    pub fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
+    }
+
     /// Uniform on the unit sphere.
     pub fn direction(&mut self) -> DVec3 {
         let (z, azimuth) = (2.0 * self.unit() - 1.0, TAU * self.unit());

@@ -63,7 +63,7 @@ fn cli_embeds_and_extracts() {
     let (code, report, _) = here.run(&format!("embed model.glb marked.glb {ADA} --tag ADA-1"));
     assert_eq!(code, 0);
     assert_eq!(report["tag"], "ADA-1");
-    assert_eq!(report["vertices"], 12_000);
+    assert_eq!(report["vertices"], 12_002);
     assert_eq!(report["read_back"]["verdict"], "found");
     for stage in ["read", "embed", "write", "measure", "test"] {
         assert!(
@@ -77,7 +77,7 @@ fn cli_embeds_and_extracts() {
         (0, &"found".into(), &"ADA-1".into())
     );
     assert!(report["ln_p"].as_f64().unwrap() < -100.0);
-    assert_eq!(report["carriers"][0]["name"], "ring");
+    assert_eq!(report["carriers"][0]["name"], "solid");
     assert_eq!(report["carriers"][0]["tag"], "ADA-1");
     assert!(
         ["read", "measure", "test"]

@@ -47,7 +47,7 @@ enum Command {
         #[arg(long, default_value = "balanced")]
         strength: Strength,
         /// Comma-separated
-        #[arg(long, value_delimiter = ',', default_value = "ring", value_parser = carrier)]
+        #[arg(long, value_delimiter = ',', default_value = "solid,ring", value_parser = carrier)]
         carriers: Vec<Carrier>,
     },
     /// Read the mark of a key from a model, or from measured evidence

@@ -5,6 +5,7 @@
 //! one list for each hypothesis that it declares in advance.
 
 pub mod ring;
+pub mod solid;
 
 use crate::code::{Codeword, SoftSymbol};
 use crate::key::Key;
@@ -18,17 +19,20 @@ use glam::DVec3;
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Carrier {
+    /// Flux through windows of a keyed lattice: see [`solid`].
+    Solid,
     /// Offsets of vertices from their one-rings, addressed by connectivity: see [`ring`].
     Ring,
 }
 
 impl Carrier {
     /// Every carrier, in the order of embedding.
-    pub const ALL: [Carrier; 1] = [Carrier::Ring];
+    pub const ALL: [Carrier; 2] = [Carrier::Solid, Carrier::Ring];
 
     /// The name that scripts and pages use.
     pub fn name(self) -> &'static str {
         match self {
+            Carrier::Solid => "solid",
             Carrier::Ring => "ring",
         }
     }
@@ -38,6 +42,13 @@ impl Carrier {
         Self::ALL.into_iter().find(|carrier| carrier.name() == name)
     }
 
+    /// The share of the RMS limit that the first carrier may take: displacements add up in quadrature.
+    pub const SHARE_OF_FIRST: f64 = 0.96;
+
+    /// The share of the RMS limit that RING may take on top of another carrier: its step is a fraction of an edge, so dense
+    /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
+    pub const SHARE_ON_TOP: f64 = 0.25;
+
     /// The displacement of all V vertices that gives the host the mark.
     pub fn embed(
         self,
@@ -46,6 +57,7 @@ impl Carrier {
         progress: &mut dyn Progress,
     ) -> Result<Vec<DVec3>, CarrierError> {
         match self {
+            Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
         }
     }
@@ -69,22 +81,30 @@ pub struct Mark<'a> {
     pub codeword: &'a Codeword,
 }
 
-/// One way of reading a measurement, declared before any key is known: its soft symbols.
-pub struct Hypothesis {
-    /// One for each address that is the key's.
-    pub symbols: Vec<SoftSymbol>,
+/// How a key reads a measurement.
+pub struct Reading {
+    /// Ways of reading that were declared before any key was known: all of them are charged.
+    pub num_declared: usize,
+    /// Those that were followed, for the others had nothing to say.
+    pub hypotheses: Vec<Hypothesis>,
     /// Distinct addresses that were there to be read, whoever's they are.
     pub num_addresses: usize,
 }
 
+/// One way of reading a measurement: its soft symbols.
+pub struct Hypothesis {
+    /// One for each address that is the key's.
+    pub symbols: Vec<SoftSymbol>,
+}
+
 /// Why a mark could not be embedded.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CarrierError {
     /// The model is too small or too regular.
     #[error(
-        "the model is too small or too regular for the {} carrier: of {vertices} vertices, {rings} have closed rings, and \
-         these have {available} distinct neighbourhoods where a mark of 48 bits needs {needed}",
+        "the model is too small or too regular for the {} carrier: its {vertices} vertices give {available} distinct places \
+         for symbols, and a mark of 48 bits needs {needed}",
         carrier.name()
     )]
     TooFewAddresses {
@@ -96,8 +116,19 @@ pub enum CarrierError {
         available: usize,
         /// Vertices of the model.
         vertices: usize,
-        /// Vertices that could carry a symbol.
-        rings: usize,
+    },
+    /// The model's shape is too poor: hardly any displacement within the limit moves what the carrier measures.
+    #[error(
+        "the {} carrier reaches an exponent of {reached:.0} in this model, and a mark of 48 bits needs {needed:.0}",
+        carrier.name()
+    )]
+    TooWeak {
+        /// The carrier that cannot be used.
+        carrier: Carrier,
+        /// The exponent that was reached, in nats.
+        reached: f64,
+        /// The exponent that a mark needs, in nats.
+        needed: f64,
     },
     /// The caller asked to stop.
     #[error(transparent)]
@@ -109,6 +140,7 @@ impl CarrierError {
     pub fn code(&self) -> &'static str {
         match self {
             CarrierError::TooFewAddresses { .. } => "carrier.too-few-addresses",
+            CarrierError::TooWeak { .. } => "carrier.too-weak",
             CarrierError::Cancelled(_) => "aborted",
         }
     }

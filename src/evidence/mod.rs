@@ -3,12 +3,13 @@
 //! Stored form (docs/FORMAT.md): `MMEV`, a version of 2 bytes, then one section a carrier: a tag of 4 bytes, the length of
 //! its content in 4 bytes, the content. All integers little-endian.
 
-use crate::carrier::ring;
+use crate::carrier::{ring, solid};
 use crate::mesh::Mesh;
 
 const MAGIC: &[u8; 4] = b"MMEV";
 const VERSION: u16 = 1;
 const RING: &[u8; 4] = b"RING";
+const SOLID: &[u8; 4] = b"SOLI";
 
 /// Why bytes are not evidence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -43,6 +44,8 @@ impl EvidenceError {
 pub struct Evidence {
     /// What RING measured.
     pub ring: ring::Measurement,
+    /// What SOLID measured.
+    pub solid: solid::Measurement,
 }
 
 impl Evidence {
@@ -50,22 +53,19 @@ impl Evidence {
     pub fn measure(mesh: &Mesh) -> Evidence {
         Evidence {
             ring: ring::Measurement::new(mesh),
+            solid: solid::Measurement::new(mesh),
         }
     }
 
     /// The evidence as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let content = self.ring.to_bytes();
-        let length = u32::try_from(content.len())
-            .expect("20 bytes a ring, and indices of vertices have 32 bits");
-        [
-            MAGIC.as_slice(),
-            &VERSION.to_le_bytes(),
-            RING,
-            &length.to_le_bytes(),
-            &content,
-        ]
-        .concat()
+        let mut bytes = [MAGIC.as_slice(), &VERSION.to_le_bytes()].concat();
+        for (tag, content) in [(RING, self.ring.to_bytes()), (SOLID, self.solid.to_bytes())] {
+            let length =
+                u32::try_from(content.len()).expect("some tens of bytes for each of 2^24 vertices");
+            bytes.extend([tag.as_slice(), &length.to_le_bytes(), &content].concat());
+        }
+        bytes
     }
 
     /// Evidence from its bytes.
@@ -78,12 +78,20 @@ impl Evidence {
             VERSION => {}
             other => return Err(EvidenceError::Version(other)),
         }
-        let bytes = bytes.strip_prefix(RING).ok_or(EvidenceError::Damaged)?;
-        let (length, content) = bytes.split_first_chunk().ok_or(EvidenceError::Damaged)?;
-        if u32::from_le_bytes(*length) as usize != content.len() {
-            return Err(EvidenceError::Damaged);
+        let (ring, bytes) = section(bytes, RING).ok_or(EvidenceError::Damaged)?;
+        let (solid, rest) = section(bytes, SOLID).ok_or(EvidenceError::Damaged)?;
+        let ring = ring::Measurement::from_bytes(ring).ok_or(EvidenceError::Damaged)?;
+        let solid = solid::Measurement::from_bytes(solid).ok_or(EvidenceError::Damaged)?;
+        if rest.is_empty() {
+            Ok(Evidence { ring, solid })
+        } else {
+            Err(EvidenceError::Damaged)
         }
-        let ring = ring::Measurement::from_bytes(content).ok_or(EvidenceError::Damaged)?;
-        Ok(Evidence { ring })
     }
+}
+
+/// The content of the section that bytes begin with, and what follows it.
+fn section<'a>(bytes: &'a [u8], tag: &[u8; 4]) -> Option<(&'a [u8], &'a [u8])> {
+    let (length, bytes) = bytes.strip_prefix(tag)?.split_first_chunk()?;
+    bytes.split_at_checked(u32::from_le_bytes(*length) as usize)
 }

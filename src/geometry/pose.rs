@@ -2,7 +2,7 @@
 //!
 //! Moments are integrals over the surface, exact for triangles, so tessellation does not matter. O(F).
 
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use glam::{DMat3, DVec3};
 
 /// The frame of a surface.
@@ -48,6 +48,56 @@ impl Pose {
         })
     }
 
+    /// The pose by volume moments: quieter than [`Pose::of`] under every change of tessellation. Boundaries are closed by
+    /// fans to their centroids. `None` for surfaces that enclose too little to have such moments.
+    ///
+    /// The mesh's triangles have to face outwards, as [`outward`](super::outward) makes them.
+    pub fn of_volume(mesh: &Mesh) -> Option<Pose> {
+        let corners: Vec<[DVec3; 3]> = mesh
+            .triangles
+            .iter()
+            .map(|&triangle| mesh.corners(triangle))
+            .chain(caps(mesh))
+            .collect();
+        let (mut total_area, mut first) = (0.0, DVec3::ZERO);
+        for &[a, b, c] in &corners {
+            let area = (b - a).cross(c - a).length() * 0.5;
+            total_area += area;
+            first += (a + b + c) * (area / 3.0);
+        }
+        let origin = first / total_area;
+        let tetrahedra = || {
+            corners.iter().map(|corners| {
+                let [p, q, r] = corners.map(|corner| corner - origin);
+                (p.dot(q.cross(r)) / 6.0, [p, q, r])
+            })
+        };
+        let volume: f64 = tetrahedra().map(|(volume, _)| volume).sum();
+        let encloses = volume.abs() > 0.01 * total_area * total_area.sqrt();
+        if !encloses {
+            return None;
+        }
+        let centre: DVec3 = tetrahedra()
+            .map(|(v, [p, q, r])| (p + q + r) * v)
+            .sum::<DVec3>()
+            / (4.0 * volume);
+        let moments: DMat3 = tetrahedra()
+            .map(|(v, [p, q, r])| (outer(p + q + r) + outer(p) + outer(q) + outer(r)) * v)
+            .sum::<DMat3>();
+        let covariance = moments * (1.0 / (20.0 * volume)) - outer(centre);
+        let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+        if !(trace > 0.0 && trace.is_finite()) {
+            return None;
+        }
+        let (spreads, axes) = eigen(covariance * (1.0 / trace));
+        (spreads.z > 0.002).then(|| Pose {
+            centre: origin + centre,
+            size: trace.sqrt(),
+            axes,
+            spreads,
+        })
+    }
+
     /// The same frame with the signs of its axes nearest to another's.
     pub fn aligned_with(self, other: &Pose) -> Pose {
         let sign = |axis: DVec3, other: DVec3| if axis.dot(other) < 0.0 { -axis } else { axis };
@@ -72,6 +122,48 @@ impl Pose {
     pub fn canonical(&self, point: DVec3) -> DVec3 {
         self.axes.transpose() * (point - self.centre) / self.size
     }
+}
+
+/// Triangles that close every connected set of boundary edges by a fan to the edges' length-weighted centroid.
+fn caps(mesh: &Mesh) -> Vec<[DVec3; 3]> {
+    let boundary: Vec<(u32, u32)> = Edges::new(mesh).boundary().collect();
+    let mut names: Vec<u32> = boundary.iter().flat_map(|&(a, b)| [a, b]).collect();
+    names.sort_unstable();
+    names.dedup();
+    let index = |vertex: u32| names.partition_point(|&name| name < vertex);
+    let mut parents: Vec<usize> = (0..names.len()).collect();
+    for &(a, b) in &boundary {
+        let (a, b) = (root(&mut parents, index(a)), root(&mut parents, index(b)));
+        parents[b] = a;
+    }
+    let mut centres = vec![(0.0, DVec3::ZERO); names.len()];
+    for &(a, b) in &boundary {
+        let (p, q) = (mesh.positions[a as usize], mesh.positions[b as usize]);
+        let length = p.distance(q);
+        let (total, sum) = &mut centres[root(&mut parents, index(a))];
+        *total += length;
+        *sum += (p + q) * (0.5 * length);
+    }
+    let mut fan = Vec::with_capacity(boundary.len());
+    for &(a, b) in &boundary {
+        let (total, sum) = centres[root(&mut parents, index(a))];
+        if total > 0.0 {
+            fan.push([
+                mesh.positions[b as usize],
+                mesh.positions[a as usize],
+                sum / total,
+            ]);
+        }
+    }
+    fan
+}
+
+fn root(parents: &mut [usize], mut node: usize) -> usize {
+    while parents[node] != node {
+        parents[node] = parents[parents[node]];
+        node = parents[node];
+    }
+    node
 }
 
 fn areas(mesh: &Mesh) -> impl Iterator<Item = (f64, [DVec3; 3])> {

@@ -96,7 +96,7 @@ impl Edges {
 
     /// Which faces to turn over so that neighbours across two-faced edges agree, the majority of each patch keeping its
     /// winding. (The majority rather than the sign of a volume: a piece cut from a model must turn as the whole did.)
-    pub fn faces_to_flip(&self) -> Vec<bool> {
+    pub fn winding(&self) -> Winding {
         // A face has at most three neighbours, each with whether it is wound the other way.
         let mut neighbours = vec![[None; 3]; self.num_faces];
         let mut join = |face: u32, neighbour: u32, differ: bool| {
@@ -114,6 +114,8 @@ impl Edges {
             }
         }
         let mut flips: Vec<Option<bool>> = vec![None; self.num_faces];
+        let mut patches = vec![0; self.num_faces];
+        let mut num_patches = 0;
         for seed in 0..self.num_faces {
             if flips[seed].is_some() {
                 continue;
@@ -126,6 +128,7 @@ impl Edges {
                 let face = patch[next] as usize;
                 next += 1;
                 let flipped = flips[face] == Some(true);
+                patches[face] = num_patches as u32;
                 num_flipped += usize::from(flipped);
                 for (neighbour, differ) in neighbours[face].into_iter().flatten() {
                     let flip = &mut flips[neighbour as usize];
@@ -141,8 +144,28 @@ impl Edges {
                     *flip = flip.map(|flipped| !flipped);
                 }
             }
+            num_patches += 1;
         }
-        flips.into_iter().map(|flip| flip == Some(true)).collect()
+        Winding {
+            flips: flips.into_iter().map(|flip| flip == Some(true)).collect(),
+            patches,
+            num_patches,
+        }
+    }
+
+    /// The edges with one face, in that face's direction.
+    pub fn boundary<'a>(&'a self) -> impl Iterator<Item = (u32, u32)> + 'a {
+        let alone = self
+            .edges()
+            .filter(|sides| sides.len() == 1)
+            .map(|sides| sides[0]);
+        alone.map(|side| {
+            if side.ascending {
+                (side.low, side.high)
+            } else {
+                (side.high, side.low)
+            }
+        })
     }
 
     /// The one-rings.
@@ -192,6 +215,16 @@ fn find(parents: &mut [u32], mut face: u32) -> u32 {
         face = grandparent;
     }
     face
+}
+
+/// How a mesh is wound.
+pub struct Winding {
+    /// For each face, whether it is to be turned over.
+    pub flips: Vec<bool>,
+    /// For each face, the number of its patch: faces joined across two-faced edges.
+    pub patches: Vec<u32>,
+    /// Patches.
+    pub num_patches: usize,
 }
 
 /// The one-ring of every vertex: its neighbours, each once.

@@ -6,7 +6,7 @@ mod edges;
 pub mod shapes;
 
 pub use admissible::{Admissible, Orbit};
-pub use edges::{Edges, Rings};
+pub use edges::{Edges, Rings, Winding};
 
 use glam::DVec3;
 

@@ -36,8 +36,8 @@ pub fn torus_knot(around: u32, across: u32) -> Mesh {
     }
 }
 
-/// A sphere of radius 1 with hills and valleys, V = `rings * sectors + 2` vertices.
-pub fn planet(rings: u32, sectors: u32) -> Mesh {
+/// A rock: an ellipsoid with half-axes of 1.3, 1 and 0.75, with hills and valleys, V = `rings * sectors + 2` vertices.
+pub fn asteroid(rings: u32, sectors: u32) -> Mesh {
     let radius = |d: DVec3| {
         1.0 + 0.06 * libm::sin(5.0 * d.x + 2.0 * d.y)
             + 0.05 * libm::sin(7.0 * d.y * d.z + 3.0 * d.x)
@@ -52,7 +52,10 @@ pub fn planet(rings: u32, sectors: u32) -> Mesh {
         .flat_map(|i| (0..sectors).map(move |j| direction(i, j)))
         .collect();
     positions.extend([DVec3::Z, DVec3::NEG_Z]);
-    let positions = positions.into_iter().map(|d| d * radius(d)).collect();
+    let positions = positions
+        .into_iter()
+        .map(|d| d * radius(d) * DVec3::new(1.3, 1.0, 0.75))
+        .collect();
     let (north, south) = (rings * sectors, rings * sectors + 1);
     let mut triangles = irregular_quads(rings - 1, sectors, |i, j| i * sectors + j % sectors);
     for j in 0..sectors {

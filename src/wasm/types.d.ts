@@ -1,8 +1,8 @@
 /** Bytes of files that a `.gltf` names by URI, keyed by that URI (percent-decoded). */
 export type Files = Record<string, Uint8Array>;
 
-/** Where a mark can live in a model's geometry. */
-export type Carrier = "ring";
+/** Where a mark can live: `solid` in the shape, whatever its triangles are; `ring` in how vertices are connected. */
+export type Carrier = "solid" | "ring";
 
 /** The owner's 48 bits: a tag of 1 to 8 characters (`A-Z a-z 0-9 - .`, the last not `.`), or a whole number from 0 to 2^48 - 1. */
 export type Payload = string | number;
@@ -16,7 +16,7 @@ export type Strength = "subtle" | "balanced" | "strong" | number;
 export interface EmbedOptions {
   /** Default: `balanced`. */
   strength?: Strength;
-  /** Default: every carrier. */
+  /** Default: every carrier. One that the model is too small or too regular for is left out, if another can be used. */
   carriers?: Carrier[];
 }
 
@@ -44,7 +44,7 @@ export interface CarrierReading {
   number: number | null;
   /** Agreement of the symbols with that payload, weighted: 1 is perfect, 0 is chance. */
   agreement: number;
-  /** Distinct addresses that were there to be read, and how many of them are this key's. */
+  /** Places for symbols that were there to be read, and how many of them are this key's. */
   addresses: number;
   ownedAddresses: number;
 }

@@ -2,7 +2,7 @@
 
 use super::{EmbedOptions, EmbedReport, Error, Verdict, extract, measure};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, Host, Mark};
+use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files};
@@ -24,6 +24,8 @@ pub struct Embedding {
 }
 
 /// Marks a model with a payload under a key.
+///
+/// A carrier that the model is too small or too regular for is left out, if another can be used.
 ///
 /// `model` is a `.glb`, or a `.gltf` whose external buffers are in `files` by URI. The marked bytes are read back and
 /// tested before they are returned: a mark that cannot be found is [`Error::Unreadable`], and nothing is returned.
@@ -49,28 +51,45 @@ pub fn embed(
         codeword: &codeword,
     };
     let mut mesh = scene.mesh.clone();
-    for carrier in Carrier::ALL
+    let chosen: Vec<Carrier> = Carrier::ALL
         .into_iter()
         .filter(|carrier| options.carriers.contains(carrier))
-    {
+        .collect();
+    let mut refusals = Vec::new();
+    let limit = options.strength.rms_rel();
+    for &carrier in &chosen {
+        let is_first = mesh == scene.mesh;
+        let rms_rel = if is_first {
+            limit
+        } else {
+            limit * Carrier::SHARE_ON_TOP
+        };
         let host = Host {
             mesh: &mesh,
             admissible: &scene.admissible,
-            rms_rel: options.strength.rms_rel(),
+            rms_rel,
         };
-        let displacement = carrier.embed(&host, &mark, progress)?;
-        mesh.positions
-            .iter_mut()
-            .zip(displacement)
-            .for_each(|(position, d)| *position += d);
+        match carrier.embed(&host, &mark, progress) {
+            Ok(displacement) => mesh
+                .positions
+                .iter_mut()
+                .zip(displacement)
+                .for_each(|(position, d)| *position += d),
+            Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(refusal) => refusals.push(refusal),
+        }
+    }
+    if refusals.len() == chosen.len() {
+        return Err(refusals.pop().map_or(Error::NoCarrier, Error::Carrier));
     }
 
     step(progress, Stage::Write, 0.0)?;
-    let displacement: Vec<DVec3> = mesh
-        .positions
-        .iter()
-        .zip(&scene.mesh.positions)
-        .map(|(a, b)| *a - *b)
+    // Carriers do not know of each other: together they may exceed the limit by a little.
+    let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
+    let scale = if taken > limit { limit / taken } else { 1.0 };
+    let pairs = mesh.positions.iter().zip(&scene.mesh.positions);
+    let displacement: Vec<DVec3> = pairs
+        .map(|(marked, host)| (*marked - *host) * scale)
         .collect();
     scene.scatter(&mut document, &displacement)?;
     let distortion = Distortion::between(&scene.mesh.positions, &scene.positions_in(&document)?);

@@ -40,8 +40,8 @@ pub enum Error {
     NoCarrier,
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
-        "the mark could not be read back from the marked model, so nothing was returned: the model has {addresses} distinct \
-         neighbourhoods, of which a key owns a quarter; a greater strength or another key may do"
+        "the mark could not be read back from the marked model, so nothing was returned: the model offers {addresses} places \
+         for symbols; a greater strength or another key may do"
     )]
     Unreadable {
         /// Distinct addresses of the marked model.

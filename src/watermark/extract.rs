@@ -3,7 +3,7 @@
 use super::error::Error;
 use super::report::{CarrierReading, Extraction, Verdict};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, Hypothesis};
+use crate::carrier::{self, Carrier, Hypothesis};
 use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
 use crate::document::{Document, Files};
@@ -50,7 +50,10 @@ fn read(evidence: &Evidence, key: &Key, expected: Option<Payload>) -> Extraction
         check: Checked::new(key),
         expected,
     };
-    conclude(vec![reader.read(Carrier::Ring, &evidence.ring.read(key))])
+    conclude(vec![
+        reader.read(Carrier::Solid, &evidence.solid.read(key)),
+        reader.read(Carrier::Ring, &evidence.ring.read(key)),
+    ])
 }
 
 /// A carrier's reading, and what else the verdict depends on. All bounds are charged for the carrier's own choices.
@@ -79,8 +82,9 @@ struct Reader {
 }
 
 impl Reader {
-    fn read(&self, name: Carrier, hypotheses: &[Hypothesis]) -> Reading {
-        let charge = self.charge(hypotheses.len());
+    fn read(&self, name: Carrier, reading: &carrier::Reading) -> Reading {
+        let hypotheses = &reading.hypotheses;
+        let charge = self.charge(reading.num_declared);
         let (candidate, other) = match (
             likeliest(hypotheses.iter().filter_map(|h| self.decode(h, charge))),
             self.expected,
@@ -100,7 +104,9 @@ impl Reader {
         let ln_p_payload = candidate
             .as_ref()
             .map_or(0.0, |candidate| union(candidate.ln_p, charge));
-        let payload = candidate.as_ref().map(|candidate| candidate.payload);
+        // A payload is named where chance is excluded: among many candidates, a wrong one may pass its check bits.
+        let named = candidate.as_ref().filter(|_| ln_p_payload <= LN_P_FOUND);
+        let payload = named.map(|candidate| candidate.payload);
         Reading {
             report: CarrierReading {
                 name,
@@ -108,11 +114,7 @@ impl Reader {
                 tag: payload.and_then(Payload::tag),
                 number: payload.map(Payload::number),
                 agreement: candidate.map_or(0.0, |candidate| candidate.all.agreement()),
-                addresses: hypotheses
-                    .iter()
-                    .map(|h| h.num_addresses)
-                    .max()
-                    .unwrap_or(0),
+                addresses: reading.num_addresses,
                 owned_addresses: hypotheses
                     .iter()
                     .map(|h| h.symbols.len())
@@ -218,10 +220,9 @@ fn conclude(readings: Vec<Reading>) -> Extraction {
         .min_by(|a, b| a.ln_p_payload.total_cmp(&b.ln_p_payload));
     let report = loudest.map(|reading| &reading.report);
     let other = readings.iter().find_map(|reading| reading.other);
+    let ln_p_payload = best(|reading| reading.ln_p_payload);
     let tag = report.and_then(|report| report.tag.clone());
     let number = report.and_then(|report| report.number);
-    let named = tag.clone().or(number.map(|number| number.to_string()));
-
     let addresses: usize = readings
         .iter()
         .map(|reading| reading.report.addresses)
@@ -230,7 +231,7 @@ fn conclude(readings: Vec<Reading>) -> Extraction {
         .iter()
         .map(|reading| reading.report.owned_addresses)
         .sum();
-    let (verdict, reason) = if best(|reading| reading.ln_p_payload) <= LN_P_FOUND {
+    let (verdict, reason) = if ln_p_payload <= LN_P_FOUND {
         (Verdict::Found, None)
     } else if let Some(other) = other {
         let other = other.tag().unwrap_or_else(|| other.number().to_string());
@@ -241,31 +242,27 @@ fn conclude(readings: Vec<Reading>) -> Extraction {
             )),
         )
     } else if ln_p <= LN_P_TRACE {
-        let reason = match named {
-            Some(name) => {
-                format!("{name} fits, but not well enough to exclude chance to one in a billion.")
-            }
-            None => "Something of this key is there, but its payload cannot be read.".to_owned(),
-        };
+        let reason =
+            "Something of this key is there, but too little to read its payload with certainty."
+                .to_owned();
         (Verdict::Partial, Some(reason))
     } else if best(|reading| reading.ln_p_at_best) > LN_P_FOUND {
         let reason = format!(
-            "The model has {addresses} distinct neighbourhoods, and {owned} of them are this key's: too few to tell."
+            "The model offers {addresses} places for symbols, and {owned} of them are this key's: too few to tell."
         );
         (Verdict::CannotCheck, Some(reason))
     } else {
         let reason = format!(
-            "{owned} of the model's {addresses} distinct neighbourhoods are this key's: they agree as by chance."
+            "{owned} of the model's {addresses} places for symbols are this key's: they agree as by chance."
         );
         (Verdict::None, Some(reason))
     };
-    let shown = matches!(verdict, Verdict::Found | Verdict::Partial);
     Extraction {
         verdict,
         sentence: verdict.sentence(),
         reason,
-        tag: tag.filter(|_| shown),
-        number: number.filter(|_| shown),
+        tag,
+        number,
         ln_p,
         agreement: report.map_or(0.0, |report| report.agreement),
         carriers: readings.into_iter().map(|reading| reading.report).collect(),

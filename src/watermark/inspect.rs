@@ -1,7 +1,7 @@
 //! What a model is made of, and what it could hold.
 
 use super::Error;
-use crate::carrier::{Carrier, ring};
+use crate::carrier::{Carrier, ring, solid};
 use crate::digest::sha256;
 use crate::document::{Container, Document, Files};
 use crate::geometry::diagonal;
@@ -80,11 +80,18 @@ pub fn inspect(model: &[u8], files: &Files) -> Result<Inspection, Error> {
             .sum(),
         nodes: document.nodes().len(),
         extensions_used: document.extensions_used().to_vec(),
-        capacity: vec![CarrierCapacity {
-            name: Carrier::Ring,
-            addresses: ring::Capacity::of(&mesh).num_addresses,
-            needed_addresses: ring::NEEDED_ADDRESSES,
-        }],
+        capacity: vec![
+            CarrierCapacity {
+                name: Carrier::Solid,
+                addresses: solid::num_windows(&mesh),
+                needed_addresses: solid::NEEDED_WINDOWS,
+            },
+            CarrierCapacity {
+                name: Carrier::Ring,
+                addresses: ring::num_addresses(&mesh),
+                needed_addresses: ring::NEEDED_ADDRESSES,
+            },
+        ],
         sha256: sha256(model),
     })
 }

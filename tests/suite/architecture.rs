@@ -5,10 +5,11 @@ use std::fs;
 use std::path::Path;
 
 /// Each room, and all that it may use of the others.
-const MAY_USE: [(&str, &[&str]); 18] = [
+const MAY_USE: [(&str, &[&str]); 19] = [
     ("bits", &[]),
     ("digest", &[]),
     ("progress", &[]),
+    ("order", &[]),
     ("random", &[]),
     ("detection", &[]),
     ("document", &[]),
@@ -17,7 +18,12 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     ("mesh", &["random"]),
     ("geometry", &["mesh"]),
     ("scene", &["document", "mesh", "geometry"]),
-    ("carrier", &["mesh", "geometry", "key", "code", "progress"]),
+    (
+        "carrier",
+        &[
+            "mesh", "geometry", "key", "code", "order", "progress", "random",
+        ],
+    ),
     ("evidence", &["carrier", "mesh"]),
     ("attack", &["mesh", "geometry", "random"]),
     (

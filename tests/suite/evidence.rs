@@ -1,18 +1,18 @@
 //! Evidence as bytes.
 
-use crate::support::fixtures::planet;
+use crate::support::fixtures::asteroid;
 use meshmark::Evidence;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn evidence_is_its_bytes() {
-    let evidence = Evidence::measure(&planet());
+    let evidence = Evidence::measure(&asteroid());
     assert_eq!(Evidence::from_bytes(&evidence.to_bytes()), Ok(evidence));
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn evidence_refuses_what_is_none_by_name() {
-    let bytes = Evidence::measure(&planet()).to_bytes();
+    let bytes = Evidence::measure(&asteroid()).to_bytes();
     let with = |offset: usize, value: u8| {
         let mut bytes = bytes.clone();
         bytes[offset] = value;

@@ -1,13 +1,14 @@
 //! Normals and distortion against what is known exactly.
 
 use glam::{DMat3, DVec3};
-use meshmark::geometry::{Distortion, Pose, diagonal, vertex_normals};
-use meshmark::mesh::{Mesh, shapes};
+use meshmark::geometry::spectral::{self, InverseFilter};
+use meshmark::geometry::{Distortion, Pose, diagonal, outward, roughness, samples, vertex_normals};
+use meshmark::mesh::{Edges, Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_normals_of_a_sphere_are_radial() {
-    let mut sphere = shapes::planet(60, 90);
+    let mut sphere = shapes::asteroid(60, 90);
     sphere.positions.iter_mut().for_each(|p| *p = p.normalize());
     let normals = vertex_normals(&sphere);
     let worst = normals
@@ -97,7 +98,7 @@ fn geometry_pose_goes_along_with_the_surface() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_surfaces_of_revolution_have_no_distinct_axes() {
-    let mut sphere = shapes::planet(20, 30);
+    let mut sphere = shapes::asteroid(20, 30);
     sphere.positions.iter_mut().for_each(|p| *p = p.normalize());
     assert!(Pose::of(&sphere).unwrap().distinctness() < 0.01);
     assert_eq!(
@@ -108,4 +109,157 @@ fn geometry_surfaces_of_revolution_have_no_distinct_axes() {
         None
     );
     assert_eq!(Pose::of(&Mesh::default()), None);
+}
+
+fn cuboid() -> Mesh {
+    let corner = |i: u32| {
+        let side = |bit: u32, length: f64| if i >> bit & 1 == 1 { length } else { 0.0 };
+        DVec3::new(side(0, 4.0), side(1, 2.0), side(2, 1.0)) + DVec3::splat(7.0)
+    };
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    Mesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
+    }
+}
+
+/// Variances of a solid cuboid are the squared sides over 12.
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_volume_pose_of_a_cuboid_is_exact() {
+    let pose = Pose::of_volume(&cuboid()).unwrap();
+    assert!(pose.centre.distance(DVec3::new(9.0, 8.0, 7.5)) < 1e-12);
+    assert!((pose.size * pose.size - 21.0 / 12.0).abs() < 1e-12);
+    assert!((pose.spreads * 21.0).distance(DVec3::new(16.0, 4.0, 1.0)) < 1e-9);
+}
+
+/// Without its lid a cuboid has the same frame: a cap closes it.
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_volume_pose_closes_holes() {
+    let mut open = cuboid();
+    open.triangles.truncate(10);
+    let (open, closed) = (
+        Pose::of_volume(&open).unwrap(),
+        Pose::of_volume(&cuboid()).unwrap(),
+    );
+    assert!(open.centre.distance(closed.centre) < 1e-9 && (open.size - closed.size).abs() < 1e-9);
+    let sheet = Mesh {
+        positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+        triangles: vec![[0, 1, 2]],
+    };
+    assert_eq!(Pose::of_volume(&sheet), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_outward_turns_whole_patches() {
+    let mut inside_out = cuboid();
+    inside_out
+        .triangles
+        .iter_mut()
+        .for_each(|triangle| triangle.swap(1, 2));
+    inside_out.triangles[3].swap(1, 2);
+    let turned = Mesh {
+        triangles: outward(&inside_out),
+        ..inside_out
+    };
+    let volume: f64 = turned
+        .triangles
+        .iter()
+        .map(|&t| {
+            let [a, b, c] = turned.corners(t);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum();
+    assert!((volume - 8.0).abs() < 1e-9, "{volume}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_samples_are_exact_to_the_first_order() {
+    let mesh = cuboid();
+    for max_edge in [100.0, 1.0, 0.3] {
+        let samples = samples(&mesh, max_edge);
+        let area: f64 = samples.iter().map(|sample| sample.area.length()).sum();
+        let moment: DVec3 = samples
+            .iter()
+            .map(|sample| sample.point * sample.area.length())
+            .sum();
+        let flux: f64 = samples
+            .iter()
+            .map(|sample| sample.point.dot(sample.area))
+            .sum();
+        assert!((area - 28.0).abs() < 1e-9);
+        assert!((moment / area).distance(DVec3::new(9.0, 8.0, 7.5)) < 1e-9);
+        assert!((flux / 3.0 - 8.0).abs() < 1e-9, "the divergence theorem");
+        assert!(
+            samples
+                .iter()
+                .all(|sample| (sample.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12)
+        );
+    }
+    assert_eq!(
+        (samples(&mesh, 100.0).len(), samples(&mesh, 2.3).len()),
+        (12, 12 * 4 - 4 * 3)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_inverse_filter_undoes_smoothing() {
+    let knot = shapes::torus_knot(80, 16);
+    let smoothed = meshmark::attack::smooth(&knot, 0.1, 10);
+    let filter = InverseFilter {
+        steps: 10.0,
+        step: spectral::laplacian,
+        gain: 1e4,
+    };
+    let rings = Edges::new(&knot).rings(knot.positions.len());
+    let restored = &spectral::filtered(&smoothed.positions, &rings, &[filter])[0];
+    let away = |positions: &[DVec3]| Distortion::between(&knot.positions, positions).rms_rel;
+    assert!(
+        away(restored) < 1e-3 * away(&smoothed.positions),
+        "{} of {}",
+        away(restored),
+        away(&smoothed.positions)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_roughness_tells_flat_from_rough() {
+    let mut half_rough = shapes::terrain(40);
+    half_rough
+        .positions
+        .iter_mut()
+        .filter(|p| p.x < 0.5)
+        .for_each(|p| p.z = 0.0);
+    let rough = meshmark::attack::noise(&half_rough, 0.02, 3);
+    half_rough
+        .positions
+        .iter_mut()
+        .zip(&rough.positions)
+        .filter(|(p, _)| p.x >= 0.5)
+        .for_each(|(p, q)| *p = *q);
+    let roughness = roughness(
+        &half_rough,
+        &Edges::new(&half_rough).rings(half_rough.positions.len()),
+    );
+    let mean = |side: fn(f64) -> bool| {
+        let values: Vec<f64> = half_rough
+            .positions
+            .iter()
+            .zip(&roughness)
+            .filter(|(p, _)| side(p.x))
+            .map(|(_, r)| *r)
+            .collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    assert!(mean(|x| x < 0.4) < 0.4 * mean(|x| x > 0.6));
+    assert!(roughness.iter().all(|r| (0.25..=3.0).contains(r)));
 }

@@ -19,5 +19,6 @@ mod payload;
 mod ring;
 mod robustness;
 mod scene;
+mod solid;
 mod support;
 mod watermark;

@@ -82,14 +82,14 @@ fn mesh_winding_follows_the_majority_of_each_patch() {
     {
         triangle.swap(1, 2);
     }
-    assert_eq!(Edges::new(&knot).faces_to_flip(), turned);
+    assert_eq!(Edges::new(&knot).winding().flips, turned);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn mesh_one_sided_surface_is_accepted() {
     let strip: Vec<[u32; 3]> = (0..7).map(|i| [i, (i + 1) % 7, (i + 2) % 7]).collect();
     let edges = Edges::new(&mesh(7, &strip));
-    assert_eq!(edges.faces_to_flip().len(), 7);
+    assert_eq!(edges.winding().flips.len(), 7);
     assert_eq!(edges.num_components(), 1);
 }
 
@@ -110,9 +110,12 @@ fn mesh_without_anything_has_nothing() {
 fn mesh_shapes_are_what_they_say() {
     let knot = shapes::torus_knot(40, 12);
     assert_eq!((knot.positions.len(), knot.triangles.len()), (480, 960));
-    let planet = shapes::planet(10, 16);
-    assert_eq!((planet.positions.len(), planet.triangles.len()), (162, 320));
-    for closed in [&knot, &planet] {
+    let asteroid = shapes::asteroid(10, 16);
+    assert_eq!(
+        (asteroid.positions.len(), asteroid.triangles.len()),
+        (162, 320)
+    );
+    for closed in [&knot, &asteroid] {
         let edges = Edges::new(closed);
         assert_eq!(
             (
@@ -122,7 +125,7 @@ fn mesh_shapes_are_what_they_say() {
             ),
             (0, 0, 1)
         );
-        assert!(!edges.faces_to_flip().contains(&true));
+        assert!(!edges.winding().flips.contains(&true));
         let volume: f64 = closed
             .triangles
             .iter()

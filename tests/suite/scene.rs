@@ -211,10 +211,10 @@ fn scene_too_large_to_hold_is_refused() {
 fn scene_gallery_is_gathered_whole() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
         let scene = Scene::gather(&read(&gallery(packing))).unwrap();
-        let (knot, planet, skinned, terrain) = (60 * 20, 20 * 30 + 2, 14 * 22 + 2, 21 * 21);
+        let (knot, asteroid, skinned, terrain) = (60 * 20, 20 * 30 + 2, 14 * 22 + 2, 21 * 21);
         assert_eq!(
             scene.mesh.positions.len(),
-            2 * knot + planet + skinned + terrain
+            2 * knot + asteroid + skinned + terrain
         );
         assert_eq!(Edges::new(&scene.mesh).num_components(), 5);
         assert_eq!(scene.admissible.orbits.len(), knot);

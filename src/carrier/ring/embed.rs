@@ -44,7 +44,6 @@ pub fn embed(
             needed: NEEDED_ADDRESSES,
             available,
             vertices: positions.len(),
-            rings: features.usable.len(),
         });
     }
 

@@ -12,7 +12,7 @@ pub struct Neighbourhoods {
 impl Neighbourhoods {
     pub fn new(mesh: &Mesh) -> Neighbourhoods {
         let edges = Edges::new(mesh);
-        let flips = edges.faces_to_flip();
+        let flips = edges.winding().flips;
         let turn = |(&[a, b, c], flip): (&[u32; 3], bool)| if flip { [a, c, b] } else { [a, b, c] };
         Neighbourhoods {
             triangles: mesh.triangles.iter().zip(flips).map(turn).collect(),

@@ -3,11 +3,12 @@
 use super::address::{self, Cell, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Ownership, STEP};
-use crate::carrier::Hypothesis;
+use crate::carrier::{Hypothesis, Reading};
 use crate::code::SoftSymbol;
 use crate::geometry::Pose;
 use crate::key::Key;
 use crate::mesh::Mesh;
+use crate::order::order_by;
 use std::f64::consts::TAU;
 
 /// Only rings with a smaller feature are read: one hypothesis each. Affine maps leave the flat rings as they are, but not
@@ -45,29 +46,13 @@ struct Sum {
     im: f64,
 }
 
-/// What RING could hold in a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Capacity {
-    /// Distinct addresses of the kind that the embedder would take.
-    pub num_addresses: usize,
-    /// Vertices that could carry a symbol.
-    pub num_rings: usize,
-}
-
-impl Capacity {
-    /// The capacity of a mesh.
-    pub fn of(mesh: &Mesh) -> Capacity {
-        let neighbourhoods = Neighbourhoods::new(mesh);
-        let features = Features::new(&mesh.positions, &neighbourhoods);
-        let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
-        let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
-        let (_, num_addresses) =
-            address::choose(mesh, &by_connectivity, &by_geometry, &features.usable);
-        Capacity {
-            num_addresses,
-            num_rings: features.usable.len(),
-        }
-    }
+/// Distinct addresses of the kind that the embedder would take in a mesh.
+pub fn num_addresses(mesh: &Mesh) -> usize {
+    let neighbourhoods = Neighbourhoods::new(mesh);
+    let features = Features::new(&mesh.positions, &neighbourhoods);
+    let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
+    let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
+    address::choose(mesh, &by_connectivity, &by_geometry, &features.usable).1
 }
 
 impl Measurement {
@@ -99,15 +84,17 @@ impl Measurement {
 
     /// The soft symbols of a key, one list for each of ten hypotheses: two kinds of address and three
     /// cuts, and four turns of the frame.
-    pub fn read(&self, key: &Key) -> Vec<Hypothesis> {
+    pub fn read(&self, key: &Key) -> Reading {
         let ownership = Ownership::of(key);
-        self.sums
-            .iter()
-            .map(|sums| Hypothesis {
-                symbols: sums.iter().filter_map(|sum| sum.read(&ownership)).collect(),
-                num_addresses: sums.len(),
-            })
-            .collect()
+        let read = |sums: &Vec<Sum>| Hypothesis {
+            symbols: sums.iter().filter_map(|sum| sum.read(&ownership)).collect(),
+        };
+        let hypotheses: Vec<Hypothesis> = self.sums.iter().map(read).collect();
+        Reading {
+            num_declared: hypotheses.len(),
+            hypotheses,
+            num_addresses: self.sums.iter().map(Vec::len).max().unwrap_or(0),
+        }
     }
 
     /// Bytes in a stored ring.
@@ -179,7 +166,12 @@ fn sums(samples: &[Sample]) -> Vec<Vec<Sum>> {
     };
     let connectivity = rings.groups(|sample| sample.by_connectivity);
     let geometry = rings.groups(|sample| sample.by_geometry);
-    let position = rings.groups(|sample| sample.cell);
+    let position = rings.groups(|sample| {
+        sample
+            .cell
+            .into_iter()
+            .fold(0, |key, n| key << 16 | u64::from(n as u16))
+    });
     let by_connectivity =
         CUTS.map(|cut| rings.sums(&connectivity, cut, |sample| sample.by_connectivity));
     let by_geometry = CUTS.map(|cut| rings.sums(&geometry, cut, |sample| sample.by_geometry));
@@ -202,51 +194,29 @@ struct Rings<'a> {
 
 impl Rings<'_> {
     /// The samples in groups of an equal key.
-    fn groups<K: Ord>(&self, key: impl Fn(&Sample) -> K) -> Groups {
-        let mut order: Vec<usize> = (0..self.samples.len()).collect();
-        order.sort_by_key(|&index| key(&self.samples[index]));
-        let same = |&a: &usize, &b: &usize| key(&self.samples[a]) == key(&self.samples[b]);
-        let sizes = order.chunk_by(same).map(<[usize]>::len).collect();
-        Groups { order, sizes }
+    fn groups(&self, key: impl Fn(&Sample) -> u64) -> Vec<(u64, u32)> {
+        order_by(self.samples.iter().map(key))
     }
 
     /// One sum for each group that has rings with a feature below the cut.
-    fn sums(&self, groups: &Groups, cut: f32, address: impl Fn(&Sample) -> u64) -> Vec<Sum> {
-        let sum = |group: &[usize]| {
-            let below = group
-                .iter()
-                .filter(|&&index| self.samples[index].offset.abs() < cut);
+    fn sums(&self, groups: &[(u64, u32)], cut: f32, address: impl Fn(&Sample) -> u64) -> Vec<Sum> {
+        let sum = |group: &[(u64, u32)]| {
+            let indices = group.iter().map(|&(_, index)| index as usize);
+            let below = indices.filter(|&index| self.samples[index].offset.abs() < cut);
             let (count, re, im) = below
-                .map(|&index| &self.phasors[index])
+                .map(|index| &self.phasors[index])
                 .fold((0, 0.0, 0.0), |(count, re, im), phasor| {
                     (count + 1, re + phasor.re, im + phasor.im)
                 });
             let scale = (LIMIT / libm::hypot(re, im)).min(1.0 / f64::from(count).sqrt());
+            let first = &self.samples[group[0].1 as usize];
             (count > 0).then(|| Sum {
-                address: address(&self.samples[group[0]]),
+                address: address(first),
                 re: re * scale,
                 im: im * scale,
             })
         };
-        groups.iter().filter_map(sum).collect()
-    }
-}
-
-/// Indices of samples in the order of a key, and how many of them have each of its values.
-struct Groups {
-    order: Vec<usize>,
-    sizes: Vec<usize>,
-}
-
-impl Groups {
-    fn iter(&self) -> impl Iterator<Item = &[usize]> {
-        self.sizes
-            .iter()
-            .scan(self.order.as_slice(), |rest, &size| {
-                let (group, after) = rest.split_at(size);
-                *rest = after;
-                Some(group)
-            })
+        groups.chunk_by(|a, b| a.0 == b.0).filter_map(sum).collect()
     }
 }
 

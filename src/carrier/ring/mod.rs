@@ -21,7 +21,7 @@ mod measurement;
 
 pub use address::NEEDED_ADDRESSES;
 pub use embed::embed;
-pub use measurement::{Capacity, Measurement};
+pub use measurement::{Measurement, num_addresses};
 
 use crate::code::Symbol;
 use crate::key::{Key, Prf};

@@ -25,8 +25,8 @@ pub fn marked(model: &[u8], key: &Key) -> Result<Embedding, Error> {
     )
 }
 
-pub fn planet() -> Mesh {
-    shapes::planet(40, 60)
+pub fn asteroid() -> Mesh {
+    shapes::asteroid(40, 60)
 }
 
 /// A scene of many kinds of geometry: a mesh shown twice, cut open along a texture seam; normalized 16-bit positions
@@ -35,8 +35,8 @@ pub fn gallery(packing: Packing) -> Model {
     let mut builder = GltfBuilder::new(packing);
     let knot = shapes::torus_knot(60, 20);
     let textured = seamed(&mut builder, &knot);
-    let quantized = quantized(&mut builder, &shapes::planet(20, 30));
-    let (skinned, skin) = skinned(&mut builder, &shapes::planet(14, 22));
+    let quantized = quantized(&mut builder, &shapes::asteroid(20, 30));
+    let (skinned, skin) = skinned(&mut builder, &shapes::asteroid(14, 22));
     let sparse = sparse(&mut builder, &shapes::terrain(20));
     let line = line(&mut builder);
     builder.node(&format!(

@@ -1,0 +1,60 @@
+//! Integrals over a surface: as many sample points as a given resolution needs.
+
+use crate::mesh::Mesh;
+use glam::DVec3;
+
+/// One part of a triangle, seen from its centroid.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Index of the triangle.
+    pub face: u32,
+    /// Weights of the triangle's corners at the part's centroid.
+    pub weights: [f64; 3],
+    /// The centroid, in scene units.
+    pub point: DVec3,
+    /// The part's area times the triangle's normal.
+    pub area: DVec3,
+}
+
+/// Splits are no deeper than this: 4096 parts.
+const DEEPEST: u32 = 6;
+
+/// Samples of all triangles: each is split into four until its edges are no longer than `max_edge`. Moments of the first
+/// order are exact in every part. O(number of parts).
+pub fn samples(mesh: &Mesh, max_edge: f64) -> Vec<Sample> {
+    let parts: Vec<Vec<[f64; 3]>> = (0..=DEEPEST).map(centroids).collect();
+    let mut samples = Vec::with_capacity(mesh.triangles.len());
+    for (&triangle, face) in mesh.triangles.iter().zip(0..) {
+        let [a, b, c] = mesh.corners(triangle);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let depth = (0..DEEPEST)
+            .find(|&depth| longest <= max_edge * f64::from(1 << depth))
+            .unwrap_or(DEEPEST);
+        let weights = &parts[depth as usize];
+        let area = (b - a).cross(c - a) * (0.5 / weights.len() as f64);
+        samples.extend(weights.iter().map(|&weights| Sample {
+            face,
+            weights,
+            point: a * weights[0] + b * weights[1] + c * weights[2],
+            area,
+        }));
+    }
+    samples
+}
+
+/// The centroids of a triangle's `4^depth` equal parts, in barycentric coordinates.
+fn centroids(depth: u32) -> Vec<[f64; 3]> {
+    let side = 1u32 << depth;
+    let third = 1.0 / 3.0;
+    let at = |i: f64, j: f64| {
+        let (u, v) = (i / f64::from(side), j / f64::from(side));
+        [1.0 - u - v, u, v]
+    };
+    let upright = (0..side)
+        .flat_map(|i| (0..side - i).map(move |j| (f64::from(i) + third, f64::from(j) + third)));
+    let inverted = (0..side).flat_map(|i| {
+        (0..(side - i).saturating_sub(1))
+            .map(move |j| (f64::from(i) + 2.0 * third, f64::from(j) + 2.0 * third))
+    });
+    upright.chain(inverted).map(|(i, j)| at(i, j)).collect()
+}

@@ -1,0 +1,155 @@
+//! The SOLID carrier.
+
+use crate::support::fixtures::key;
+use glam::DVec3;
+use meshmark::attack::{noise, quantize, reorder, similarity, smooth};
+use meshmark::carrier::solid::{Measurement, num_windows};
+use meshmark::carrier::{Carrier, Host, Mark};
+use meshmark::code::Codeword;
+use meshmark::detection::Statistic;
+use meshmark::geometry::Distortion;
+use meshmark::ignore;
+use meshmark::mesh::{Admissible, Mesh, shapes};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+const MESSAGE: u64 = 0x0f1_2345_6789_abcd;
+
+fn rock() -> Mesh {
+    shapes::asteroid(40, 60)
+}
+
+/// Marks a mesh at a strength of 0.08 %.
+fn marked(mesh: &Mesh, owner: u8) -> Mesh {
+    let host = Host {
+        mesh,
+        admissible: &Admissible::default(),
+        rms_rel: 0.0008,
+    };
+    let mark = Mark {
+        key: &key(owner),
+        codeword: &Codeword::new(MESSAGE),
+    };
+    let displacement = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap();
+    mesh.with_positions(
+        mesh.positions
+            .iter()
+            .zip(displacement)
+            .map(|(p, d)| *p + d)
+            .collect(),
+    )
+}
+
+/// The exponent of the hypothesis in which the message fits best.
+fn exponent(mesh: &Mesh, reader: u8) -> f64 {
+    let codeword = Codeword::new(MESSAGE);
+    let hypotheses = Measurement::new(mesh).read(&key(reader)).hypotheses;
+    let fits = hypotheses.iter().map(|hypothesis| {
+        let symbols = hypothesis.symbols.iter();
+        -Statistic::new(symbols.map(|soft| (soft.value * codeword.sign(soft.symbol), soft.weight)))
+            .ln_p()
+    });
+    fits.fold(0.0, f64::max)
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_marks_a_mesh_within_the_limit() {
+    let (host, result) = (rock(), marked(&rock(), 1));
+    let distortion = Distortion::between(&host.positions, &result.positions);
+    assert!(
+        distortion.rms_rel <= 0.0008 * (1.0 + 1e-9) && distortion.max_rel <= 0.0032 * (1.0 + 1e-9),
+        "{distortion:?}"
+    );
+    assert!(exponent(&result, 1) > 150.0, "{}", exponent(&result, 1));
+    assert!(
+        exponent(&result, 2) < 12.0,
+        "another key sees nothing: {}",
+        exponent(&result, 2)
+    );
+    assert!(
+        exponent(&host, 1) < 12.0,
+        "the unmarked mesh says nothing: {}",
+        exponent(&host, 1)
+    );
+}
+
+/// Each attack with the share of the exponent that has to be left.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_stays_in_the_shape() {
+    let result = marked(&rock(), 1);
+    let whole = exponent(&result, 1);
+    for (name, suspect, share) in [
+        (
+            "similarity, reorder",
+            reorder(&similarity(&result, 5), 6),
+            0.97,
+        ),
+        ("noise 0.1 %", noise(&result, 0.001, 7), 0.9),
+        (
+            "noise 0.3 %, similarity",
+            similarity(&noise(&result, 0.003, 8), 9),
+            0.6,
+        ),
+        ("quantize 10", quantize(&result, 10), 0.8),
+        (
+            "quantize 9, similarity",
+            similarity(&quantize(&result, 9), 10),
+            0.5,
+        ),
+        ("smooth 5", smooth(&result, 0.1, 5), 0.3),
+        (
+            "smooth 20, similarity",
+            similarity(&smooth(&result, 0.1, 20), 11),
+            0.3,
+        ),
+        ("smooth 50", smooth(&result, 0.1, 50), 0.2),
+    ] {
+        let left = exponent(&suspect, 1) / whole;
+        assert!(left >= share, "{name}: {left:.2} of {whole:.0} is left");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_marks_of_two_keys_stay_beside_each_other() {
+    let twice = marked(&marked(&rock(), 1), 2);
+    assert!(
+        exponent(&twice, 1) > 40.0 && exponent(&twice, 2) > 150.0,
+        "{} {}",
+        exponent(&twice, 1),
+        exponent(&twice, 2)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_measurement_is_its_bytes() {
+    let measurement = Measurement::new(&shapes::torus_knot(40, 10));
+    let bytes = measurement.to_bytes();
+    assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Some(&measurement));
+    assert_eq!(Measurement::from_bytes(&bytes[..bytes.len() - 1]), None);
+    assert!(bytes.len() < 2_000_000);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_refuses_shapes_that_cannot_hold_it() {
+    let sheet = Mesh {
+        positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+        triangles: vec![[0, 1, 2]],
+    };
+    assert!(num_windows(&sheet) <= 3 * sheet.positions.len());
+    let host = Host {
+        mesh: &sheet,
+        admissible: &Admissible::default(),
+        rms_rel: 0.0008,
+    };
+    let mark = Mark {
+        key: &key(1),
+        codeword: &Codeword::new(MESSAGE),
+    };
+    let code = Carrier::Solid
+        .embed(&host, &mark, &mut ignore)
+        .unwrap_err()
+        .code();
+    assert!(
+        ["carrier.too-few-addresses", "carrier.too-weak"].contains(&code),
+        "{code}"
+    );
+}

@@ -8,7 +8,7 @@ import { glbFromObj } from "../tests/support.mjs";
 
 const TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3";
 const DONE = 0;
-const CANNOT_CHECK = 2;
+const NOT_FOUND = 1;
 
 /** Runs the commands of `work` with the program at `cli`, in a temporary folder that goes with this process. */
 export function prepareNative(cli, work) {
@@ -28,7 +28,7 @@ export function prepareNative(cli, work) {
   const commands = {
     /** The program does not time its key derivation: this is what a passphrase takes longer than a key file. */
     key() {
-      const [derived, given] = [byPassphrase, byKey].map((key) => call(cli, ["extract", triangle, ...key], CANNOT_CHECK).outsideStages);
+      const [derived, given] = [byPassphrase, byKey].map((key) => call(cli, ["extract", triangle, ...key], NOT_FOUND).outsideStages);
       return { ms: { key: derived - given } };
     },
     embed() {

@@ -42,9 +42,6 @@ impl Carrier {
         Self::ALL.into_iter().find(|carrier| carrier.name() == name)
     }
 
-    /// The share of the RMS limit that the first carrier may take: displacements add up in quadrature.
-    pub const SHARE_OF_FIRST: f64 = 0.96;
-
     /// The share of the RMS limit that RING may take on top of another carrier: its step is a fraction of an edge, so dense
     /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
     pub const SHARE_ON_TOP: f64 = 0.25;

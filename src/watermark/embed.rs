@@ -84,7 +84,8 @@ pub fn embed(
     }
 
     step(progress, Stage::Write, 0.0)?;
-    // Carriers do not know of each other: together they may exceed the limit by a little.
+    // Each carrier keeps to a limit of its own: together they exceed the whole's by a few percent, which quantizers do not
+    // notice.
     let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
     let scale = if taken > limit { limit / taken } else { 1.0 };
     let pairs = mesh.positions.iter().zip(&scene.mesh.positions);

@@ -1,15 +1,28 @@
 //! What can happen to a model after it was marked: pure functions of a mesh and a seed. An attacker has no key.
 
+mod average;
 mod crop;
+mod editing;
 mod noise;
 mod quantize;
+mod remesh;
 mod reorder;
+mod resample;
 mod similarity;
+mod simplify;
 mod smooth;
+mod subdivide;
+mod warp;
 
+pub use average::average;
 pub use crop::crop;
 pub use noise::noise;
 pub use quantize::quantize;
+pub use remesh::remesh;
 pub use reorder::reorder;
+pub use resample::resample;
 pub use similarity::similarity;
-pub use smooth::smooth;
+pub use simplify::simplify;
+pub use smooth::{smooth, taubin};
+pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};
+pub use warp::warp;

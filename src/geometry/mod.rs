@@ -7,6 +7,7 @@ mod pose;
 mod quadrature;
 mod roughness;
 pub mod spectral;
+mod surface;
 
 pub use distortion::{Distortion, diagonal};
 pub use normal::vertex_normals;
@@ -14,3 +15,4 @@ pub use orientation::outward;
 pub use pose::Pose;
 pub use quadrature::{Sample, samples};
 pub use roughness::roughness;
+pub use surface::{Nearest, Surface};

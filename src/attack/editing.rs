@@ -1,0 +1,247 @@
+//! A mesh under operations on its edges: what simplification and re-meshing have in common.
+
+use crate::mesh::Mesh;
+use glam::DVec3;
+
+/// How far a face may turn when a vertex of it moves: the cosine of the largest angle.
+const LARGEST_TURN: f64 = 0.2;
+/// Twice a face's area over its longest side's square: what is below this is no face.
+const THINNEST: f64 = 1e-4;
+
+/// Vertices that know their faces. Accepts any mesh; what cannot be edited without making an edge of more than two faces
+/// stays as it is.
+pub(super) struct Editable {
+    pub positions: Vec<DVec3>,
+    faces: Vec<Option<[u32; 3]>>,
+    faces_at: Vec<Vec<u32>>,
+    num_faces: usize,
+}
+
+impl Editable {
+    pub fn new(mesh: &Mesh) -> Editable {
+        let mut faces_at = vec![Vec::new(); mesh.positions.len()];
+        for (name, &face) in (0..).zip(&mesh.triangles) {
+            face.iter().for_each(|&v| faces_at[v as usize].push(name));
+        }
+        Editable {
+            positions: mesh.positions.clone(),
+            faces: mesh.triangles.iter().copied().map(Some).collect(),
+            faces_at,
+            num_faces: mesh.triangles.len(),
+        }
+    }
+
+    /// The mesh, without vertices that have no face.
+    pub fn into_mesh(self) -> Mesh {
+        let mut names = vec![0; self.positions.len()];
+        let mut positions = Vec::new();
+        for (v, position) in self.positions.iter().enumerate() {
+            names[v] = positions.len() as u32;
+            if !self.faces_at[v].is_empty() {
+                positions.push(*position);
+            }
+        }
+        let faces = self.faces.iter().flatten();
+        Mesh {
+            positions,
+            triangles: faces.map(|face| face.map(|v| names[v as usize])).collect(),
+        }
+    }
+
+    pub fn num_faces(&self) -> usize {
+        self.num_faces
+    }
+
+    pub fn at(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    pub fn length(&self, a: u32, b: u32) -> f64 {
+        self.at(a).distance(self.at(b))
+    }
+
+    /// The corners of the faces at a vertex.
+    pub fn faces_at(&self, vertex: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.faces_at[vertex as usize]
+            .iter()
+            .filter_map(|&face| self.faces[face as usize])
+    }
+
+    /// Twice the area, along the normal.
+    pub fn normal(&self, face: [u32; 3]) -> DVec3 {
+        cross(face.map(|v| self.at(v)))
+    }
+
+    /// The neighbours of a vertex, in rising order.
+    pub fn neighbours(&self, vertex: u32) -> Vec<u32> {
+        let mut neighbours: Vec<u32> = self.faces_at(vertex).flatten().collect();
+        neighbours.sort_unstable();
+        neighbours.dedup();
+        neighbours.retain(|&n| n != vertex);
+        neighbours
+    }
+
+    /// The third corners of an edge's faces.
+    pub fn apexes(&self, a: u32, b: u32) -> Vec<u32> {
+        let faces = self.faces_at(a).filter(|face| face.contains(&b));
+        faces.map(|face| third(face, a, b)).collect()
+    }
+
+    /// Every edge once, in rising order.
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let faces = self.faces.iter().flatten();
+        let mut edges: Vec<[u32; 2]> = faces
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Whether an edge at the vertex has another number of faces than two.
+    pub fn is_border(&self, vertex: u32) -> bool {
+        let mut neighbours: Vec<u32> = self.faces_at(vertex).flatten().collect();
+        neighbours.sort_unstable();
+        neighbours
+            .chunk_by(|a, b| a == b)
+            .any(|same| same[0] != vertex && same.len() != 2)
+    }
+
+    /// Makes one vertex of an edge's two, `kept` at the position `to`, if the surface stays what it is: the link condition
+    /// (Dey, Edelsbrunner, Guha and Nekhayev 1999), no face turned over or gone thin, no component gone. Says whether it did.
+    pub fn collapse(&mut self, kept: u32, lost: u32, to: DVec3) -> bool {
+        let apexes = self.apexes(kept, lost);
+        if !self.keeps_its_kind(kept, lost, &apexes) || !self.keeps_its_faces(kept, lost, to) {
+            return false;
+        }
+        self.positions[kept as usize] = to;
+        for face in std::mem::take(&mut self.faces_at[lost as usize]) {
+            let Some(corners) = self.faces[face as usize] else {
+                continue;
+            };
+            if corners.contains(&kept) {
+                self.remove(face, corners);
+            } else {
+                self.faces[face as usize] = Some(corners.map(|v| if v == lost { kept } else { v }));
+                self.faces_at[kept as usize].push(face);
+            }
+        }
+        true
+    }
+
+    fn keeps_its_kind(&self, a: u32, b: u32, apexes: &[u32]) -> bool {
+        let others = self.neighbours(b);
+        let mut common = self.neighbours(a);
+        common.retain(|v| others.binary_search(v).is_ok());
+        match *apexes {
+            [_] => common.len() == 1 && self.faces_at(a).count() + self.faces_at(b).count() > 2,
+            [c, d] => {
+                let ends = self.apexes(c, d);
+                common.len() == 2
+                    && !(ends.contains(&a) && ends.contains(&b))
+                    && !(self.is_border(a) && self.is_border(b))
+            }
+            _ => false,
+        }
+    }
+
+    fn keeps_its_faces(&self, a: u32, b: u32, to: DVec3) -> bool {
+        [(a, b), (b, a)].into_iter().all(|(moved, other)| {
+            let mut faces = self.faces_at(moved).filter(|face| !face.contains(&other));
+            faces.all(|face| {
+                let before = face.map(|v| self.at(v));
+                let after = face.map(|v| if v == moved { to } else { self.at(v) });
+                is_kept(cross(before), after)
+            })
+        })
+    }
+
+    /// Divides an edge, and its faces, at its middle. Gives the new vertex.
+    pub fn split(&mut self, a: u32, b: u32) -> u32 {
+        let middle = self.positions.len() as u32;
+        self.positions.push(self.at(a).midpoint(self.at(b)));
+        self.faces_at.push(Vec::new());
+        let faces = self.faces_at[a as usize].clone();
+        for face in faces {
+            let Some(corners) = self.faces[face as usize].filter(|face| face.contains(&b)) else {
+                continue;
+            };
+            self.remove(face, corners);
+            self.add(corners.map(|v| if v == a { middle } else { v }));
+            self.add(corners.map(|v| if v == b { middle } else { v }));
+        }
+        middle
+    }
+
+    /// Turns an edge of two faces into the other diagonal of their quad, if that is no edge yet and no face turns over.
+    /// Says whether it did.
+    pub fn flip(&mut self, a: u32, b: u32) -> bool {
+        let faces: Vec<(u32, [u32; 3])> = self.faces_at[a as usize]
+            .iter()
+            .filter_map(|&face| Some((face, self.faces[face as usize]?)))
+            .filter(|(_, corners)| corners.contains(&b))
+            .collect();
+        let [first, second] = faces[..] else {
+            return false;
+        };
+        let (c, d) = (third(first.1, a, b), third(second.1, a, b));
+        let normal =
+            self.normal(first.1).normalize_or_zero() + self.normal(second.1).normalize_or_zero();
+        // Each face's own third corner stays, and one end of the edge is replaced by the other face's.
+        let turned = [
+            first.1.map(|v| if v == b { d } else { v }),
+            second.1.map(|v| if v == a { c } else { v }),
+        ];
+        let is_edge = c == d || !self.apexes(c, d).is_empty();
+        if is_edge
+            || !turned
+                .iter()
+                .all(|face| is_kept(normal, face.map(|v| self.at(v))))
+        {
+            return false;
+        }
+        self.remove(first.0, first.1);
+        self.remove(second.0, second.1);
+        turned.into_iter().for_each(|face| self.add(face));
+        true
+    }
+
+    fn remove(&mut self, name: u32, corners: [u32; 3]) {
+        self.faces[name as usize] = None;
+        self.num_faces -= 1;
+        for vertex in corners {
+            self.faces_at[vertex as usize].retain(|&face| face != name);
+        }
+    }
+
+    fn add(&mut self, corners: [u32; 3]) {
+        let name = self.faces.len() as u32;
+        self.faces.push(Some(corners));
+        self.num_faces += 1;
+        for vertex in corners {
+            self.faces_at[vertex as usize].push(name);
+        }
+    }
+}
+
+fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+fn third(face: [u32; 3], a: u32, b: u32) -> u32 {
+    // The two that are known cancel.
+    face[0] ^ face[1] ^ face[2] ^ a ^ b
+}
+
+/// Whether a face is one, and has not turned away from the normal that it had.
+fn is_kept(before: DVec3, after: [DVec3; 3]) -> bool {
+    let [a, b, c] = after;
+    let normal = cross(after);
+    let longest = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
+    normal.length() > THINNEST * longest
+        && before.dot(normal) >= LARGEST_TURN * before.length() * normal.length()
+}

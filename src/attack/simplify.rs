@@ -1,0 +1,135 @@
+//! Simplification by quadric error metrics.
+
+use super::editing::Editable;
+use crate::mesh::Mesh;
+use glam::{DMat3, DVec3};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// The planes that hold a border in place, against those of the faces.
+const BORDER_WEIGHT: f64 = 10.0;
+/// Pull of an edge's middle on its vertex, against the planes: it decides where they leave the choice.
+const REGULARISATION: f64 = 1e-6;
+
+/// Collapses edges, the one that changes the surface least first, until the `fraction` (0 to 1) of the faces is gone:
+/// quadric error metrics (Garland and Heckbert 1997), weighted by area, with their planes through borders. Each collapse
+/// removes an edge, and two faces inside, so this is about the fraction of the edges too. The LIRIS benchmark (Wang et al.
+/// 2010) removes 10 to 97.5 %. Stops earlier where no collapse is left that keeps the surface's topology and turns no face
+/// over. O(F log F).
+pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
+    let target = ((1.0 - fraction) * mesh.triangles.len() as f64).round() as usize;
+    let mut editable = Editable::new(mesh);
+    let mut quadrics = quadrics(&editable, mesh);
+    // Counts a vertex's changes: a candidate of another count is out of date.
+    let mut ages = vec![0u32; mesh.positions.len()];
+    let candidate = |editable: &Editable, quadrics: &[Quadric], ages: &[u32], a: u32, b: u32| {
+        let (_, cost) = placed(editable, quadrics, a, b);
+        // Costs are not negative, so their bits are in their order.
+        Reverse((cost.to_bits(), a, b, ages[a as usize], ages[b as usize]))
+    };
+    let mut heap: BinaryHeap<_> = editable
+        .edges()
+        .into_iter()
+        .map(|[a, b]| candidate(&editable, &quadrics, &ages, a, b))
+        .collect();
+    while editable.num_faces() > target {
+        let Some(Reverse((_, a, b, age_a, age_b))) = heap.pop() else {
+            break;
+        };
+        if (age_a, age_b) != (ages[a as usize], ages[b as usize]) {
+            continue;
+        }
+        let (to, _) = placed(&editable, &quadrics, a, b);
+        if !editable.collapse(a, b, to) {
+            continue;
+        }
+        quadrics[a as usize] = quadrics[a as usize].plus(&quadrics[b as usize]);
+        ages[a as usize] += 1;
+        ages[b as usize] += 1;
+        for neighbour in editable.neighbours(a) {
+            let (a, b) = (a.min(neighbour), a.max(neighbour));
+            heap.push(candidate(&editable, &quadrics, &ages, a, b));
+        }
+    }
+    editable.into_mesh()
+}
+
+/// Where an edge's vertex goes, and what that costs.
+fn placed(editable: &Editable, quadrics: &[Quadric], a: u32, b: u32) -> (DVec3, f64) {
+    let sum = quadrics[a as usize].plus(&quadrics[b as usize]);
+    let to = sum.minimum(editable.at(a).midpoint(editable.at(b)));
+    (to, sum.at(to).max(0.0))
+}
+
+/// Sum of squared distances from planes: x.Ax + 2 b.x + c.
+#[derive(Clone, Copy)]
+struct Quadric {
+    a: DMat3,
+    b: DVec3,
+    c: f64,
+}
+
+impl Quadric {
+    const ZERO: Quadric = Quadric {
+        a: DMat3::ZERO,
+        b: DVec3::ZERO,
+        c: 0.0,
+    };
+
+    fn plane(normal: DVec3, through: DVec3, weight: f64) -> Quadric {
+        let offset = -normal.dot(through);
+        let axis = |n: f64| normal * (n * weight);
+        Quadric {
+            a: DMat3::from_cols(axis(normal.x), axis(normal.y), axis(normal.z)),
+            b: normal * (offset * weight),
+            c: offset * offset * weight,
+        }
+    }
+
+    fn plus(&self, other: &Quadric) -> Quadric {
+        Quadric {
+            a: self.a + other.a,
+            b: self.b + other.b,
+            c: self.c + other.c,
+        }
+    }
+
+    fn at(&self, x: DVec3) -> f64 {
+        x.dot(self.a * x) + 2.0 * self.b.dot(x) + self.c
+    }
+
+    /// Where it is least; near `guess` where the planes leave that open.
+    fn minimum(&self, guess: DVec3) -> DVec3 {
+        let trace = self.a.x_axis.x + self.a.y_axis.y + self.a.z_axis.z;
+        let pull = REGULARISATION * trace;
+        if pull <= 0.0 {
+            return guess;
+        }
+        let system = self.a + DMat3::from_diagonal(DVec3::splat(pull));
+        system.inverse() * (guess * pull - self.b)
+    }
+}
+
+/// The planes of each vertex's faces, and those that stand on its borders.
+fn quadrics(editable: &Editable, mesh: &Mesh) -> Vec<Quadric> {
+    let mut quadrics = vec![Quadric::ZERO; mesh.positions.len()];
+    let mut add = |vertex: u32, quadric: &Quadric| {
+        quadrics[vertex as usize] = quadrics[vertex as usize].plus(quadric);
+    };
+    for &face in &mesh.triangles {
+        let normal = editable.normal(face);
+        let through = editable.at(face[0]);
+        let quadric = Quadric::plane(normal.normalize_or_zero(), through, normal.length() / 2.0);
+        face.iter().for_each(|&v| add(v, &quadric));
+        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (face[i], face[j])) {
+            if editable.apexes(a, b).len() != 2 {
+                let along = editable.at(b) - editable.at(a);
+                let across = along.cross(normal).normalize_or_zero();
+                let weight = BORDER_WEIGHT * along.length_squared();
+                let quadric = Quadric::plane(across, editable.at(a), weight);
+                [a, b].iter().for_each(|&v| add(v, &quadric));
+            }
+        }
+    }
+    quadrics
+}

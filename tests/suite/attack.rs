@@ -1,0 +1,375 @@
+//! What each attack promises.
+
+use crate::support::fixtures::asteroid;
+use glam::DVec3;
+use meshmark::attack::{
+    average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample, simplify,
+    smooth, sqrt3, taubin, warp,
+};
+use meshmark::geometry::{Distortion, Surface, diagonal};
+use meshmark::mesh::{Edges, Mesh, shapes};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn volume(mesh: &Mesh) -> f64 {
+    let volumes = mesh.triangles.iter().map(|&t| {
+        let [a, b, c] = mesh.corners(t);
+        a.dot(b.cross(c)) / 6.0
+    });
+    volumes.sum()
+}
+
+fn areas(mesh: &Mesh) -> impl Iterator<Item = f64> + '_ {
+    mesh.triangles.iter().map(|&t| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a).length() / 2.0
+    })
+}
+
+/// V, E, F and boundary edges.
+fn counts(mesh: &Mesh) -> [usize; 4] {
+    let mut edges: Vec<[u32; 2]> = mesh
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    [
+        mesh.positions.len(),
+        edges.len(),
+        mesh.triangles.len(),
+        Edges::new(mesh).num_boundary(),
+    ]
+}
+
+/// The largest distance of one mesh's vertices from the other's surface, both ways, as a fraction of the diagonal.
+fn hausdorff(a: &Mesh, b: &Mesh) -> f64 {
+    let farthest = |from: &Mesh, to: &Mesh| {
+        let surface = Surface::new(to);
+        let distances = from
+            .positions
+            .iter()
+            .map(|&p| surface.nearest(p).unwrap().distance);
+        distances.fold(0.0, f64::max)
+    };
+    farthest(a, b).max(farthest(b, a)) / diagonal(&a.positions)
+}
+
+/// No edge of more than two faces, none run twice in one direction, no face without area, no vertex without a face.
+fn assert_sound(name: &str, mesh: &Mesh) {
+    let edges = Edges::new(mesh);
+    assert_eq!(edges.num_non_manifold(), 0, "{name}");
+    assert!(!edges.winding().flips.contains(&true), "{name}");
+    assert!(mesh.positions.iter().all(|p| p.is_finite()), "{name}");
+    let mean = areas(mesh).sum::<f64>() / mesh.triangles.len() as f64;
+    assert!(areas(mesh).all(|area| area > 1e-9 * mean), "{name}");
+    let mut used = vec![false; mesh.positions.len()];
+    mesh.triangles
+        .iter()
+        .flatten()
+        .for_each(|&v| used[v as usize] = true);
+    assert!(!used.contains(&false), "{name}");
+}
+
+/// The vertices on boundaries, in an order of their own.
+fn border(mesh: &Mesh) -> Vec<[u64; 3]> {
+    let vertices = Edges::new(mesh)
+        .boundary()
+        .map(|(from, _)| from)
+        .collect::<Vec<_>>();
+    let mut places: Vec<[u64; 3]> = vertices
+        .into_iter()
+        .map(|v| mesh.positions[v as usize].to_array().map(f64::to_bits))
+        .collect();
+    places.sort_unstable();
+    places
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_noise_keeps_to_its_amplitude() {
+    let mesh = asteroid();
+    let noisy = noise(&mesh, 0.003, 1);
+    let count = mesh.positions.len() as f64;
+    let mean = mesh.positions.iter().sum::<DVec3>() / count;
+    let size = mesh.positions.iter().map(|p| p.distance(mean)).sum::<f64>() / count;
+    let largest = mesh
+        .positions
+        .iter()
+        .zip(&noisy.positions)
+        .map(|(a, b)| (*a - *b).abs().max_element())
+        .fold(0.0, f64::max);
+    assert!((0.00299..=0.003).contains(&(largest / size)));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_quantize_leaves_so_many_values() {
+    let mesh = quantize(&asteroid(), 7);
+    let low = mesh.positions.iter().map(|p| p.x).fold(f64::MAX, f64::min);
+    let high = mesh.positions.iter().map(|p| p.x).fold(f64::MIN, f64::max);
+    for p in &mesh.positions {
+        let step = (p.x - low) / (high - low) * 127.0;
+        assert!((step - step.round()).abs() < 1e-9);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_smooth_keeps_boundaries_and_shrinks() {
+    let terrain = shapes::terrain(20);
+    assert_eq!(border(&smooth(&terrain, 0.1, 30)), border(&terrain));
+    let mesh = asteroid();
+    let smoothed = volume(&smooth(&mesh, 0.1, 50)) / volume(&mesh);
+    let kept = volume(&taubin(&mesh, 0.5, -0.53, 20)) / volume(&mesh);
+    assert!(
+        smoothed < 0.999 && (kept - 1.0).abs() < 0.2 * (1.0 - smoothed),
+        "{smoothed} {kept}"
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_subdivisions_have_their_counts() {
+    for mesh in [asteroid(), shapes::terrain(20)] {
+        let [v, e, f, b] = counts(&mesh);
+        for (name, divided, vertices, faces, borders) in [
+            ("midpoint", midpoint(&mesh), v + e, 4 * f, 2 * b),
+            ("loop", loop_scheme(&mesh), v + e, 4 * f, 2 * b),
+            ("sqrt3", sqrt3(&mesh), v + f, 3 * f, b),
+            (
+                "catmull-clark",
+                catmull_clark(&mesh, 1),
+                v + e + f,
+                6 * f,
+                2 * b,
+            ),
+        ] {
+            let [v, _, f, b] = counts(&divided);
+            assert_eq!([v, f, b], [vertices, faces, borders], "{name}");
+            assert_sound(name, &divided);
+            let distance = hausdorff(&mesh, &divided);
+            assert!(distance < 0.02, "{name}: {distance}");
+        }
+        // Each triangle is three quads, which meet in 2 E + 3 F edges.
+        let twice = counts(&catmull_clark(&mesh, 2));
+        assert_eq!(twice[0], (v + e + f) + (2 * e + 3 * f) + 3 * f);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_midpoint_keeps_the_surface() {
+    let mesh = asteroid();
+    assert!((volume(&midpoint(&mesh)) / volume(&mesh) - 1.0).abs() < 1e-12);
+}
+
+/// On a flat, regular plane the smooth schemes reproduce the plane, and its square stays one.
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_subdivisions_keep_planes() {
+    let mut plane = shapes::terrain(12);
+    plane.positions.iter_mut().for_each(|p| p.z = 0.0);
+    for (name, divided) in [
+        ("sqrt3", sqrt3(&plane)),
+        ("catmull-clark", catmull_clark(&plane, 2)),
+    ] {
+        assert!(
+            divided.positions.iter().all(|p| p.z.abs() < 1e-15),
+            "{name}"
+        );
+        assert!((areas(&divided).sum::<f64>() - 1.0).abs() < 1e-12, "{name}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_removes_its_fraction() {
+    let mesh = asteroid();
+    for (fraction, farthest) in [(0.3, 0.001), (0.5, 0.002), (0.9, 0.01), (0.975, 0.04)] {
+        let simple = simplify(&mesh, fraction);
+        let kept = simple.triangles.len() as f64 / mesh.triangles.len() as f64;
+        assert!((kept - (1.0 - fraction)).abs() < 0.001, "{kept}");
+        assert_sound("simplify", &simple);
+        assert_eq!(Edges::new(&simple).num_boundary(), 0);
+        let distance = hausdorff(&mesh, &simple);
+        assert!(distance < farthest, "{fraction}: {distance}");
+        let ratio = volume(&simple) / volume(&mesh);
+        assert!((ratio - 1.0).abs() < farthest, "{fraction}: {ratio}");
+        assert_eq!(simple, simplify(&mesh, fraction), "deterministic");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_keeps_borders_and_planes() {
+    let mut plane = shapes::terrain(20);
+    plane.positions.iter_mut().for_each(|p| p.z = 0.0);
+    let simple = simplify(&plane, 0.9);
+    assert_sound("plane", &simple);
+    assert!(
+        (areas(&simple).sum::<f64>() - 1.0).abs() < 1e-6,
+        "the square stays a square"
+    );
+    assert_eq!(Edges::new(&simple).num_components(), 1);
+}
+
+/// Nothing is left to collapse long before nothing is left.
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_keeps_the_topology() {
+    let knot = simplify(&shapes::torus_knot(60, 20), 1.0);
+    assert_sound("knot", &knot);
+    let [v, e, f, b] = counts(&knot);
+    assert_eq!(
+        (v as i64 - e as i64 + f as i64, b),
+        (0, 0),
+        "still of genus 1"
+    );
+    assert!(f >= 14, "no torus has fewer faces than 14, this one {f}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_accepts_non_manifold_edges() {
+    let mut mesh = shapes::terrain(10);
+    let first = mesh.positions.len() as u32;
+    // A fin on the edge between the first two vertices of a row inside.
+    mesh.positions.push(DVec3::new(0.5, 0.5, 1.0));
+    mesh.triangles.push([60, 61, first]);
+    let simple = simplify(&mesh, 0.5);
+    assert_eq!(Edges::new(&simple).num_non_manifold(), 1);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_remesh_evens_edges_on_the_same_surface() {
+    for (name, mesh, length) in [
+        ("asteroid", asteroid(), 0.02),
+        ("knot", shapes::torus_knot(160, 24), 0.012),
+        ("terrain", shapes::terrain(30), 0.03),
+    ] {
+        let new = remesh(&mesh, length);
+        assert_sound(name, &new);
+        assert!(
+            hausdorff(&mesh, &new) < 0.003,
+            "{name}: {}",
+            hausdorff(&mesh, &new)
+        );
+        let target = length * diagonal(&mesh.positions);
+        let lengths: Vec<f64> = new
+            .triangles
+            .iter()
+            .map(|&[a, b, _]| {
+                new.positions[a as usize].distance(new.positions[b as usize]) / target
+            })
+            .collect();
+        let even = lengths.iter().filter(|l| (0.66..=1.5).contains(*l)).count();
+        assert!(
+            even * 20 > lengths.len() * 19,
+            "{name}: {even} of {}",
+            lengths.len()
+        );
+        let before = counts(&mesh);
+        let after = counts(&new);
+        let euler = |[v, e, f, _]: [usize; 4]| v as i64 - e as i64 + f as i64;
+        assert_eq!(euler(before), euler(after), "{name}");
+        assert_eq!(new, remesh(&mesh, length), "deterministic");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_remesh_keeps_creases() {
+    let cube = cube();
+    let new = remesh(&cube, 0.03);
+    assert_sound("cube", &new);
+    assert!((volume(&new) - 1.0).abs() < 1e-9, "{}", volume(&new));
+}
+
+fn cube() -> Mesh {
+    let position = |v: u32| DVec3::new(f64::from(v & 1), f64::from(v >> 1 & 1), f64::from(v >> 2));
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    Mesh {
+        positions: (0..8).map(position).collect(),
+        triangles: quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_resample_finds_the_surface_again() {
+    for (name, mesh, cell) in [
+        ("asteroid", asteroid(), 0.015),
+        ("knot", shapes::torus_knot(160, 24), 0.008),
+        ("cube", cube(), 0.02),
+    ] {
+        let new = resample(&mesh, cell);
+        assert_sound(name, &new);
+        assert_eq!(Edges::new(&new).num_boundary(), 0, "{name}");
+        assert_eq!(Edges::new(&new).num_components(), 1, "{name}");
+        let distance = hausdorff(&mesh, &new);
+        assert!(distance < cell, "{name}: {distance}");
+        let ratio = volume(&new) / volume(&mesh);
+        assert!((ratio - 1.0).abs() < 0.01, "{name}: {ratio}");
+        assert_eq!(new, resample(&mesh, cell), "deterministic");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_resample_ends_an_open_surface_where_it_ended() {
+    let terrain = shapes::terrain(30);
+    let new = resample(&terrain, 0.015);
+    assert_sound("terrain", &new);
+    let ratio = areas(&new).sum::<f64>() / areas(&terrain).sum::<f64>();
+    assert!((0.95..1.1).contains(&ratio), "{ratio}");
+    assert!(hausdorff(&terrain, &new) < 0.015);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_warp_has_its_rms_and_is_smooth() {
+    let mesh = asteroid();
+    let warped = warp(&mesh, 0.1, 0.0008, 3);
+    let distortion = Distortion::between(&mesh.positions, &warped.positions);
+    assert!((distortion.rms_rel - 0.0008).abs() < 1e-9);
+    let displacement = |v: u32| warped.positions[v as usize] - mesh.positions[v as usize];
+    let (mut difference, mut size) = (0.0, 0.0);
+    for &[a, b, _] in &mesh.triangles {
+        difference += (displacement(a) - displacement(b)).length();
+        size += displacement(a).length();
+    }
+    assert!(difference < size, "neighbours move alike");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_average_is_the_mean() {
+    let mesh = asteroid();
+    let moved = mesh.with_positions(mesh.positions.iter().map(|p| *p + DVec3::X).collect());
+    let mean = average(&[mesh.clone(), moved]);
+    let halfway = mesh.positions.iter().map(|p| *p + DVec3::X / 2.0);
+    assert!(
+        mean.positions
+            .iter()
+            .zip(halfway)
+            .all(|(a, b)| a.distance(b) < 1e-12)
+    );
+    assert_eq!(mean.triangles, mesh.triangles);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_nothing_comes_of_nothing() {
+    let nothing = Mesh::default();
+    for result in [
+        smooth(&nothing, 0.1, 2),
+        taubin(&nothing, 0.5, -0.53, 2),
+        midpoint(&nothing),
+        loop_scheme(&nothing),
+        sqrt3(&nothing),
+        catmull_clark(&nothing, 2),
+        simplify(&nothing, 0.5),
+        remesh(&nothing, 0.01),
+        resample(&nothing, 0.01),
+        warp(&nothing, 0.1, 0.001, 1),
+        average(&[]),
+    ] {
+        assert_eq!(result, nothing);
+    }
+}

@@ -139,6 +139,54 @@ fn mesh_shapes_are_what_they_say() {
     assert_eq!(Edges::new(&shapes::terrain(8)).num_boundary(), 32);
 }
 
+/// V, components, boundary edges, Euler's characteristic.
+fn kind(mesh: &Mesh) -> (usize, usize, usize, i64) {
+    let edges = Edges::new(mesh);
+    assert_eq!(edges.num_non_manifold(), 0);
+    assert!(!edges.winding().flips.contains(&true), "wound alike");
+    let sides = 3 * mesh.triangles.len() + edges.num_boundary();
+    let euler = mesh.positions.len() as i64 - sides as i64 / 2 + mesh.triangles.len() as i64;
+    (
+        mesh.positions.len(),
+        edges.num_components(),
+        edges.num_boundary(),
+        euler,
+    )
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn mesh_shapes_without_axes_are_what_they_say() {
+    assert_eq!(kind(&shapes::torus(30, 12)), (360, 1, 0, 0));
+    assert_eq!(kind(&shapes::vase(40, 20)), (801, 1, 20, 1));
+    assert_eq!(kind(&shapes::relief_sphere(20, 30)), (602, 1, 0, 2));
+    assert_eq!(kind(&shapes::capsule(20, 30)), (602, 1, 0, 2));
+    assert_eq!(kind(&shapes::icosphere(3)), (642, 1, 0, 2));
+    let radii = shapes::icosphere(3)
+        .positions
+        .into_iter()
+        .map(DVec3::length);
+    assert!(radii.into_iter().all(|radius| (radius - 1.0).abs() < 1e-12));
+    let capsule = shapes::capsule(20, 30).positions;
+    let distance = |p: &DVec3| (*p - DVec3::Z * p.z.clamp(-0.5, 0.5)).length();
+    assert!(capsule.iter().all(|p| (distance(p) - 0.5).abs() < 1e-12));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn mesh_machined_part_is_what_it_says() {
+    // Genus 6: 2 - 2 * 6.
+    assert_eq!(kind(&shapes::cad_part()), (5526, 1, 0, -10));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn mesh_game_shapes_are_what_they_say() {
+    assert_eq!(kind(&shapes::low_poly()), (602, 1, 0, 2));
+    // Six spheres by topology and a torus.
+    assert_eq!(kind(&shapes::seven_shapes()), (1776, 7, 0, 12));
+    let (vertices, components, boundary, _) = kind(&shapes::game_asset());
+    assert_eq!((vertices, components), (9901, 56));
+    assert!(boundary > 1000, "most of it is open: {boundary}");
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn mesh_admissible_displacements_are_a_projection() {
     let turn = glam::DMat3::from_rotation_z(1.0) * 2.0;

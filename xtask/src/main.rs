@@ -4,6 +4,7 @@ mod apt;
 mod bench;
 mod browser;
 mod debian;
+mod lab;
 mod manifest;
 mod npm;
 mod page;
@@ -27,6 +28,7 @@ cargo xtask build                 the wasm module, for the npm package
 cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the next free one
 cargo xtask test                  every check there is
 cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs
+cargo xtask lab [--quick]         docs/ROBUSTNESS.md: what marks survive; more with --help
 
 Each installs what it needs and is missing.";
 
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         ["bench", "--runs", runs] => {
             bench::parse_runs(runs).and_then(|runs| bench::bench(&mut steps, runs))
         }
+        ["lab", ref arguments @ ..] => lab::lab(&mut steps, arguments),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

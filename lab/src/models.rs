@@ -1,0 +1,176 @@
+//! What is marked: generated shapes, and files where there are some.
+
+use glam::DVec3;
+use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::scene::to_glb;
+use std::path::{Path, PathBuf};
+
+/// What a model is like, and so which table it is in.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Class {
+    /// One closed or nearly closed surface with axes of its own.
+    Plain,
+    /// Without axes of its own.
+    Symmetric,
+    /// Of many parts, or of few vertices.
+    Game,
+}
+
+impl Class {
+    pub const ALL: [(Class, &str); 3] = [
+        (Class::Plain, "Scanned, organic and machined shapes"),
+        (Class::Symmetric, "Symmetric shapes"),
+        (Class::Game, "Game assets, many parts and low-poly models"),
+    ];
+}
+
+pub struct Model {
+    pub name: String,
+    pub class: Class,
+    /// A `.glb`.
+    pub bytes: Vec<u8>,
+    pub is_quick: bool,
+}
+
+/// Vertices without which a file is no model to mark.
+const FEWEST_VERTICES: usize = 500;
+/// Of files: fewer vertices are low-poly, more components are many parts.
+const LOW_POLY: usize = 2000;
+const MANY_PARTS: usize = 5;
+/// Of the default folder.
+const SCENES: [&str; 3] = ["chr_knight.glb", "ShapeCollection.glb", "DenseSphere.glb"];
+const SYMMETRIC: [&str; 1] = ["DenseSphere"];
+const QUICK: [&str; 3] = ["rocker-arm", "cow", "chr_knight"];
+
+/// Every model, files first, and what files could not be read.
+pub fn all(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
+    let paths = match folder {
+        Some(folder) => files(folder)?,
+        None => {
+            let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/models");
+            let mut paths = if shared.exists() {
+                files(&shared.join("obj"))?
+            } else {
+                Vec::new()
+            };
+            let scenes = SCENES.map(|scene| shared.join("gltf").join(scene));
+            paths.extend(scenes.into_iter().filter(|path| path.exists()));
+            paths
+        }
+    };
+    let (mut models, mut unread) = (Vec::new(), Vec::new());
+    for path in paths {
+        match read(&path) {
+            Ok(model) => models.extend(model),
+            Err(error) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                unread.push(format!("{name}: {error}"));
+            }
+        }
+    }
+    models.extend(generated());
+    Ok((models, unread))
+}
+
+fn generated() -> impl Iterator<Item = Model> {
+    use Class::{Game, Plain, Symmetric};
+    let shapes = [
+        ("asteroid", Plain, shapes::asteroid(60, 90), true),
+        ("torus knot", Plain, shapes::torus_knot(240, 32), false),
+        ("terrain", Plain, shapes::terrain(80), false),
+        ("machined part", Plain, shapes::cad_part(), true),
+        ("torus", Symmetric, shapes::torus(120, 48), true),
+        ("vase", Symmetric, shapes::vase(60, 80), false),
+        (
+            "sphere with relief",
+            Symmetric,
+            shapes::relief_sphere(60, 90),
+            false,
+        ),
+        ("capsule", Symmetric, shapes::capsule(60, 80), false),
+        ("icosphere", Symmetric, shapes::icosphere(4), false),
+        ("rover", Game, shapes::game_asset(), true),
+        ("seven shapes", Game, shapes::seven_shapes(), false),
+        ("creature", Game, shapes::low_poly(), false),
+    ];
+    shapes
+        .into_iter()
+        .map(|(name, class, mesh, is_quick)| Model {
+            name: name.to_owned(),
+            class,
+            bytes: to_glb(&mesh),
+            is_quick,
+        })
+}
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(folder);
+    let entries = entries.map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| matches!(extension(path), "glb" | "obj"));
+    paths.sort();
+    Ok(paths)
+}
+
+fn extension(path: &Path) -> &str {
+    path.extension().and_then(|e| e.to_str()).unwrap_or("")
+}
+
+/// A model, unless it is too small.
+fn read(path: &Path) -> Result<Option<Model>, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    let bytes = match extension(path) {
+        "obj" => to_glb(&read_obj(&String::from_utf8_lossy(&bytes))?),
+        _ => bytes,
+    };
+    let mesh = crate::case::gathered(&bytes)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let is_game =
+        mesh.positions.len() < LOW_POLY || Edges::new(&mesh).num_components() > MANY_PARTS;
+    let class = match (SYMMETRIC.contains(&&*name), is_game) {
+        (true, _) => Class::Symmetric,
+        (_, true) => Class::Game,
+        _ => Class::Plain,
+    };
+    Ok((mesh.positions.len() >= FEWEST_VERTICES).then(|| Model {
+        class,
+        bytes,
+        is_quick: QUICK.contains(&&*name),
+        name: name.into_owned(),
+    }))
+}
+
+/// Positions and polygons of a Wavefront .obj, polygons as fans.
+fn read_obj(text: &str) -> Result<Mesh, String> {
+    let mut mesh = Mesh::default();
+    for line in text.lines() {
+        let wrong = || format!("not understood: {line}");
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let numbers: Vec<f64> = words.take(3).flat_map(str::parse).collect();
+                let position: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;
+                mesh.positions.push(DVec3::from(position));
+            }
+            Some("f") => {
+                let corners: Vec<u32> = words
+                    .map(|word| word.split('/').next().unwrap_or("").parse::<u32>())
+                    .collect::<Result<_, _>>()
+                    .map_err(|_| wrong())?;
+                if corners
+                    .iter()
+                    .any(|&c| c == 0 || c as usize > mesh.positions.len())
+                {
+                    return Err(wrong());
+                }
+                let rest = corners.get(1..).unwrap_or_default();
+                mesh.triangles.extend(
+                    rest.windows(2)
+                        .map(|pair| [corners[0] - 1, pair[0] - 1, pair[1] - 1]),
+                );
+            }
+            _ => {}
+        }
+    }
+    Ok(mesh)
+}

@@ -11,24 +11,30 @@ use std::fmt::Write;
 
 /// Models of each sort: unmarked, and marked and then attacked.
 const MODELS: usize = 10;
+const SPARE: usize = 3;
 /// Keys between two lines of progress.
-const BATCH: u64 = 10_000;
+const BATCH: u64 = 1000;
 const DECADES: u32 = 6;
 
 /// The tail of ln p over `tests` tests, each with a key of its own, evenly over the evidence of both sorts.
 pub fn table(models: &[Model], seed: &Seed, tests: u64) -> Result<String, String> {
-    let cases: Vec<Case> = models
-        .par_iter()
+    // Evenly from files and shapes, and some to take the place of those that cannot be marked.
+    let count = (MODELS + SPARE).min(models.len());
+    let chosen: Vec<&Model> = (0..count)
+        .map(|number| &models[number * models.len() / count])
+        .collect();
+    let cases: Vec<Case> = chosen
+        .into_par_iter()
         .map(|model| Case::new(model, ("strong", Strength::STRONG), seed))
         .collect::<Result<_, _>>()?;
-    let unmarked: Vec<&Case> = cases.iter().take(MODELS).collect();
     let marked: Vec<(&Case, &Mesh)> = cases
         .iter()
         .filter_map(|case| Some((case, &case.marked.as_ref().ok()?.mesh)))
         .take(MODELS)
         .collect();
-    let mut suspects: Vec<(String, Mesh)> = unmarked
+    let mut suspects: Vec<(String, Mesh)> = cases
         .iter()
+        .take(MODELS)
         .map(|case| (format!("{}, unmarked", case.model.name), case.host.clone()))
         .collect();
     suspects.extend(marked.iter().enumerate().map(|(number, (case, mesh))| {
@@ -67,7 +73,8 @@ pub fn table(models: &[Model], seed: &Seed, tests: u64) -> Result<String, String
         eprint!("\r{} of {tests}   ", tests.min(first + BATCH));
     }
     eprintln!();
-    Ok(document(&suspects, &ln_ps, unmarked.len(), seed, tests))
+    let num_unmarked = suspects.len() - marked.len();
+    Ok(document(&suspects, &ln_ps, num_unmarked, seed, tests))
 }
 
 fn document(

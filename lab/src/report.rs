@@ -165,6 +165,11 @@ fn line(row: &Row, cells: &[(&str, &Cell)]) -> String {
 fn median(mut numbers: Vec<f64>, decimals: usize, unit: f64) -> String {
     numbers.sort_by(f64::total_cmp);
     let middle = numbers.get(numbers.len().saturating_sub(1) / 2);
-    // Adding 0 makes one zero of two.
-    middle.map_or(String::new(), |x| format!("{:.decimals$}", x * unit + 0.0))
+    let Some(middle) = middle else {
+        return String::new();
+    };
+    let text = format!("{:.decimals$}", middle * unit);
+    // What rounds to nothing has no sign.
+    let is_zero = text.bytes().all(|c| b"-0.".contains(&c));
+    text[usize::from(is_zero && text.starts_with('-'))..].to_owned()
 }

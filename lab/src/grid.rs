@@ -6,7 +6,7 @@ use crate::case::Case;
 use glam::DVec3;
 use meshmark::attack::{
     average, catmull_clark, crop, loop_scheme, midpoint, noise, quantize, remesh, reorder,
-    resample, simplify, smooth, sqrt3, taubin, warp,
+    resample, simplify, smooth, smooth_inside, sqrt3, taubin, warp,
 };
 use meshmark::mesh::Mesh;
 
@@ -96,6 +96,13 @@ pub fn rows() -> Vec<Row> {
             "",
             &[5.0, 10.0, 20.0, 30.0, 50.0],
             &[10.0, 50.0],
+            |m, x, _| smooth_inside(m, 0.1, x as u32),
+        ),
+        series(
+            "Laplacian, borders too,",
+            "",
+            &[10.0, 50.0],
+            &[],
             |m, x, _| smooth(m, 0.1, x as u32),
         ),
         series("Taubin", "", &[20.0], &[], |m, x, _| {

@@ -23,6 +23,6 @@ pub use reorder::reorder;
 pub use resample::resample;
 pub use similarity::similarity;
 pub use simplify::simplify;
-pub use smooth::{smooth, taubin};
+pub use smooth::{smooth, smooth_inside, taubin};
 pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};
 pub use warp::warp;

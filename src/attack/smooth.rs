@@ -3,9 +3,19 @@
 use crate::mesh::{Edges, Mesh, Rings};
 use glam::DVec3;
 
-/// Moves every vertex by `lambda` of the way to the mean of its neighbours, `steps` times; vertices of a boundary stay. The
-/// LIRIS benchmark (Wang et al. 2010) smooths with lambda 0.10, 5 to 50 times, and keeps boundaries.
+/// Moves every vertex by `lambda` of the way to the mean of its neighbours, `steps` times, on boundaries too, as modelling
+/// programs do.
 pub fn smooth(mesh: &Mesh, lambda: f64, steps: u32) -> Mesh {
+    let rings = Edges::new(mesh).rings(mesh.positions.len());
+    let mut positions = mesh.positions.clone();
+    for _ in 0..steps {
+        positions = stepped(&positions, &rings, lambda, |_| true);
+    }
+    mesh.with_positions(positions)
+}
+
+/// The same, but vertices of a boundary stay: the LIRIS benchmark (Wang et al. 2010), with lambda 0.10, 5 to 50 times.
+pub fn smooth_inside(mesh: &Mesh, lambda: f64, steps: u32) -> Mesh {
     let edges = Edges::new(mesh);
     let mut moves = vec![true; mesh.positions.len()];
     for (from, to) in edges.boundary() {

@@ -4,7 +4,7 @@ use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::attack::{
     average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample, simplify,
-    smooth, sqrt3, taubin, warp,
+    smooth, smooth_inside, sqrt3, taubin, warp,
 };
 use meshmark::geometry::{Distortion, Surface, diagonal};
 use meshmark::mesh::{Edges, Mesh, shapes};
@@ -116,8 +116,10 @@ fn attack_quantize_leaves_so_many_values() {
 #[wasm_bindgen_test(unsupported = test)]
 fn attack_smooth_keeps_boundaries_and_shrinks() {
     let terrain = shapes::terrain(20);
-    assert_eq!(border(&smooth(&terrain, 0.1, 30)), border(&terrain));
+    assert_eq!(border(&smooth_inside(&terrain, 0.1, 30)), border(&terrain));
+    assert_ne!(border(&smooth(&terrain, 0.1, 30)), border(&terrain));
     let mesh = asteroid();
+    assert_eq!(smooth_inside(&mesh, 0.1, 9), smooth(&mesh, 0.1, 9));
     let smoothed = volume(&smooth(&mesh, 0.1, 50)) / volume(&mesh);
     let kept = volume(&taubin(&mesh, 0.5, -0.53, 20)) / volume(&mesh);
     assert!(
@@ -359,6 +361,7 @@ fn attack_nothing_comes_of_nothing() {
     let nothing = Mesh::default();
     for result in [
         smooth(&nothing, 0.1, 2),
+        smooth_inside(&nothing, 0.1, 2),
         taubin(&nothing, 0.5, -0.53, 2),
         midpoint(&nothing),
         loop_scheme(&nothing),

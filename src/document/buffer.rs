@@ -1,6 +1,5 @@
 //! The bytes behind the buffers of a document: read from wherever they are, patched in place.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::json::{self, FromJson, Place};
@@ -31,6 +30,10 @@ impl Storage {
             original,
             patched: None,
         }
+    }
+
+    fn is_file(&self, key: &str) -> bool {
+        matches!(&self.origin, Origin::File(name) if name == key)
     }
 
     /// The current bytes.
@@ -76,8 +79,7 @@ pub(super) fn resolve(
     binary: Option<Vec<u8>>,
     files: &Files,
 ) -> Result<(Vec<Storage>, Vec<Buffer>), DocumentError> {
-    let mut storages = Vec::new();
-    let mut by_file = BTreeMap::new();
+    let mut storages: Vec<Storage> = Vec::new();
     let has_chunk = binary.is_some();
     storages.extend(binary.map(|bytes| Storage::new(Origin::Chunk, bytes)));
 
@@ -124,7 +126,8 @@ pub(super) fn resolve(
                         pointer: pointer(),
                         uri: decoded.clone(),
                     })?;
-                *by_file.entry(key).or_insert_with(|| {
+                let known = storages.iter().position(|storage| storage.is_file(key));
+                known.unwrap_or_else(|| {
                     storages.push(Storage::new(Origin::File(key.clone()), bytes.clone()));
                     storages.len().saturating_sub(1)
                 })

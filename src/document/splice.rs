@@ -1,20 +1,20 @@
 //! Edits of a text that leave everything else in it as it is.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
+
+use crate::order::order_by;
 
 /// A text and what is to be replaced in it.
 pub(super) struct Splice<'t> {
     pub text: &'t str,
-    /// By the start of a range, its end and what replaces it.
-    edits: BTreeMap<usize, (usize, String)>,
+    edits: Vec<(Range<usize>, String)>,
 }
 
 impl<'t> Splice<'t> {
     pub fn new(text: &'t str) -> Self {
         Self {
             text,
-            edits: BTreeMap::new(),
+            edits: Vec::new(),
         }
     }
 
@@ -25,17 +25,21 @@ impl<'t> Splice<'t> {
 
     /// Replaces a range, which overlaps no other that is replaced.
     pub fn replace(&mut self, range: Range<usize>, replacement: String) {
-        self.edits.insert(range.start, (range.end, replacement));
+        self.edits.push((range, replacement));
     }
 
     /// The edited text.
     pub fn finish(self) -> String {
         let mut output = String::with_capacity(self.text.len());
         let mut position = 0;
-        for (start, (end, replacement)) in &self.edits {
-            output.push_str(self.get(position..*start));
+        let order = order_by(self.edits.iter().map(|(range, _)| range.start as u64));
+        for (range, replacement) in order
+            .iter()
+            .filter_map(|&(_, index)| self.edits.get(index as usize))
+        {
+            output.push_str(self.get(position..range.start));
             output.push_str(replacement);
-            position = *end;
+            position = range.end;
         }
         output.push_str(self.get(position..self.text.len()));
         output

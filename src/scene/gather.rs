@@ -210,7 +210,7 @@ impl Gathering {
         if triangles.is_empty() {
             return Err(SceneError::NoTriangles);
         }
-        let admissible = orbits::admissible(document, &self.placements)?;
+        let admissible = orbits::admissible(document, &self.placements, positions.len())?;
         Ok(Scene {
             mesh: Mesh {
                 positions,

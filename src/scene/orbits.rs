@@ -4,67 +4,85 @@ use super::Placement;
 use super::uses::uses;
 use crate::document::{Document, DocumentError};
 use crate::mesh::{Admissible, Orbit};
+use crate::order::order_by;
 use glam::DMat3;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Relative difference at which two ways to the same displacement count as one.
 const TOLERANCE: f64 = 1e-9;
 
-/// `M`: a displacement `d` of one vertex goes with `M d` of another.
-type Link = (u32, DMat3);
+/// A displacement `d` of one vertex goes with `map d` of another.
+#[derive(Clone, Copy)]
+struct Link {
+    from: u32,
+    to: u32,
+    map: DMat3,
+}
 
 /// The displacements that can be written: bytes that several nodes show link the instances of their vertices; vertices
 /// whose links contradict each other (a mirrored copy that touches itself), or that cannot be written, are fixed.
 pub fn admissible(
     document: &Document,
     placements: &[Placement],
+    num_vertices: usize,
 ) -> Result<Admissible, DocumentError> {
-    let mut fixed = unwritable(document, placements)?;
+    let mut fixed = unwritable(document, placements, num_vertices)?;
     let links = links(document, placements)?;
     let mut orbits = Vec::new();
-    let mut visited = BTreeSet::new();
-    for &root in links.keys() {
-        if visited.contains(&root) {
+    let mut visited = vec![false; num_vertices];
+    for &Link { from: root, .. } in &links {
+        if is_set(&visited, root) {
             continue;
         }
         let (members, consistent) = orbit(root, &links);
-        visited.extend(members.iter().map(|&(vertex, _)| vertex));
-        if !consistent || members.iter().any(|(vertex, _)| fixed.contains(vertex)) {
-            fixed.extend(members.iter().map(|&(vertex, _)| vertex));
+        let vertices = || members.iter().map(|&(vertex, _)| vertex);
+        vertices().for_each(|vertex| set(&mut visited, vertex));
+        if !consistent || vertices().any(|vertex| is_set(&fixed, vertex)) {
+            vertices().for_each(|vertex| set(&mut fixed, vertex));
         } else if members.len() > 1 {
             orbits.push(Orbit { members });
         }
     }
+    let fixed = fixed.iter().zip(0..).filter(|(fixed, _)| **fixed);
     Ok(Admissible {
         orbits,
-        fixed: fixed.into_iter().collect(),
+        fixed: fixed.map(|(_, vertex)| vertex).collect(),
     })
 }
 
-/// The vertices of which an element cannot be written.
+/// For each vertex, whether an element of it cannot be written.
 fn unwritable(
     document: &Document,
     placements: &[Placement],
-) -> Result<BTreeSet<u32>, DocumentError> {
-    let mut fixed = BTreeSet::new();
+    num_vertices: usize,
+) -> Result<Vec<bool>, DocumentError> {
+    let mut fixed = vec![false; num_vertices];
     for placement in placements {
         let held = document.fixed_elements(placement.accessor)?;
-        let held = placement
-            .vertices
-            .iter()
-            .zip(held)
-            .filter(|(_, held)| *held || placement.to_local.is_none());
-        fixed.extend(held.filter_map(|(vertex, _)| *vertex));
+        for (vertex, held) in placement.vertices.iter().zip(held) {
+            if let Some(vertex) = *vertex
+                && (held || placement.to_local.is_none())
+            {
+                set(&mut fixed, vertex);
+            }
+        }
     }
     Ok(fixed)
 }
 
-/// For each vertex that shares an element's bytes with another, the links from it.
-fn links(
-    document: &Document,
-    placements: &[Placement],
-) -> Result<BTreeMap<u32, Vec<Link>>, DocumentError> {
-    let mut links: BTreeMap<u32, Vec<Link>> = BTreeMap::new();
+fn is_set(flags: &[bool], vertex: u32) -> bool {
+    flags.get(vertex as usize) == Some(&true)
+}
+
+fn set(flags: &mut [bool], vertex: u32) {
+    if let Some(flag) = flags.get_mut(vertex as usize) {
+        *flag = true;
+    }
+}
+
+/// The links between vertices that share an element's bytes, both ways, those from one vertex side by side.
+fn links(document: &Document, placements: &[Placement]) -> Result<Vec<Link>, DocumentError> {
+    let mut links: Vec<Link> = Vec::new();
     let linear = |placement: usize| {
         let placement = placements.get(placement)?;
         Some((placement.to_world.matrix3, placement.to_local?))
@@ -79,33 +97,40 @@ fn links(
             else {
                 continue;
             };
-            links
-                .entry(first.vertex)
-                .or_default()
-                .push((other.vertex, other_to_world * to_local));
-            links
-                .entry(other.vertex)
-                .or_default()
-                .push((first.vertex, to_world * other_to_local));
+            links.push(Link {
+                from: first.vertex,
+                to: other.vertex,
+                map: other_to_world * to_local,
+            });
+            links.push(Link {
+                from: other.vertex,
+                to: first.vertex,
+                map: to_world * other_to_local,
+            });
         }
     }
-    Ok(links)
+    let order = order_by(links.iter().map(|link| u64::from(link.from))).into_iter();
+    Ok(order
+        .filter_map(|(_, index)| links.get(index as usize).copied())
+        .collect())
 }
 
-/// All vertices that are linked to a root, each once, and whether their links agree.
-fn orbit(root: u32, links: &BTreeMap<u32, Vec<Link>>) -> (Vec<Link>, bool) {
+/// All vertices that are linked to a root, each once and with its map, and whether their links agree.
+fn orbit(root: u32, links: &[Link]) -> (Vec<(u32, DMat3)>, bool) {
     let mut maps = BTreeMap::from([(root, DMat3::IDENTITY)]);
     let mut open = vec![root];
     let mut consistent = true;
     while let Some(vertex) = open.pop() {
         let map = maps.get(&vertex).copied().unwrap_or_default();
-        for &(neighbour, link) in links.get(&vertex).into_iter().flatten() {
-            let reached = link * map;
-            match maps.get(&neighbour) {
+        let first = links.partition_point(|link| link.from < vertex);
+        let from_here = links.get(first..).unwrap_or_default();
+        for link in from_here.iter().take_while(|link| link.from == vertex) {
+            let reached = link.map * map;
+            match maps.get(&link.to) {
                 Some(known) => consistent &= agree(known, &reached),
                 None => {
-                    maps.insert(neighbour, reached);
-                    open.push(neighbour);
+                    maps.insert(link.to, reached);
+                    open.push(link.to);
                 }
             }
         }

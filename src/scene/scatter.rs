@@ -4,7 +4,6 @@ use super::uses::uses;
 use super::{Scene, SceneError};
 use crate::document::Document;
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 impl Scene {
     /// Displaces the document's elements as V admissible displacements of the vertices say. Each coordinate is rounded to
@@ -14,7 +13,7 @@ impl Scene {
         document: &mut Document,
         displacement: &[DVec3],
     ) -> Result<(), SceneError> {
-        let mut moves: BTreeMap<usize, Vec<(usize, DVec3)>> = BTreeMap::new();
+        let mut moves: Vec<Vec<(usize, DVec3)>> = vec![Vec::new(); self.placements.len()];
         for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
             // The displacement is admissible, so all uses of an element agree about it: the first moves it.
             let Some(first) = uses.first() else { continue };
@@ -22,16 +21,17 @@ impl Scene {
                 .placements
                 .get(first.placement)
                 .and_then(|placement| placement.to_local);
-            if let (Some(to_local), Some(d)) = (to_local, displacement.get(first.vertex as usize)) {
-                moves
-                    .entry(first.placement)
-                    .or_default()
-                    .push((first.element, to_local * *d));
+            if let (Some(to_local), Some(d), Some(moves)) = (
+                to_local,
+                displacement.get(first.vertex as usize),
+                moves.get_mut(first.placement),
+            ) {
+                moves.push((first.element, to_local * *d));
             }
         }
-        for (index, placement) in self.placements.iter().enumerate() {
+        for (placement, moves) in self.placements.iter().zip(moves) {
             let mut positions = document.positions(placement.accessor)?;
-            for (element, d) in moves.remove(&index).unwrap_or_default() {
+            for (element, d) in moves {
                 if let Some(position) = positions.get_mut(element) {
                     *position = (DVec3::from_array(*position) + d).to_array();
                 }

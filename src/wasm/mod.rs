@@ -198,15 +198,16 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     let files = value
         .dyn_ref::<Object>()
         .ok_or_else(|| argument("files is an object of byte arrays"))?;
-    let entry = |entry: JsValue| {
+    let mut named = Files::new();
+    for entry in Object::entries(files).iter() {
         let entry = Array::from(&entry);
         let bytes = entry
             .get(1)
             .dyn_into::<Uint8Array>()
             .map_err(|_| argument("files are byte arrays"))?;
-        Ok((entry.get(0).as_string().unwrap_or_default(), bytes.to_vec()))
-    };
-    Object::entries(files).iter().map(entry).collect()
+        named.insert(entry.get(0).as_string().unwrap_or_default(), bytes.to_vec());
+    }
+    Ok(named)
 }
 
 /// A property, `undefined` where the value is no object.

@@ -12,12 +12,12 @@ const MAY_USE: [(&str, &[&str]); 19] = [
     ("order", &[]),
     ("random", &[]),
     ("detection", &[]),
-    ("document", &[]),
+    ("document", &["order"]),
     ("key", &[]),
     ("code", &["bits", "key"]),
     ("mesh", &["random"]),
-    ("geometry", &["mesh"]),
-    ("scene", &["document", "mesh", "geometry"]),
+    ("geometry", &["mesh", "order"]),
+    ("scene", &["document", "mesh", "geometry", "order"]),
     (
         "carrier",
         &[

@@ -16,7 +16,7 @@ pub struct Slot {
 }
 
 /// Elements of `size` bytes, `stride` >= `size` bytes apart, that lie within their storage.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Region {
     pub storage: usize,
     pub start: usize,
@@ -138,6 +138,18 @@ impl View {
 }
 
 impl Region {
+    /// All that the region is, its place first.
+    pub fn words(&self) -> [u64; 5] {
+        let Self {
+            storage,
+            start,
+            stride,
+            size,
+            count,
+        } = *self;
+        [storage, start, stride, size, count].map(|word| word as u64)
+    }
+
     /// The slot of element `index`.
     pub fn slot(&self, index: usize) -> Option<Slot> {
         let offset = index.checked_mul(self.stride)?.checked_add(self.start)?;

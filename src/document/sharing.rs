@@ -9,6 +9,7 @@
 use super::accessor::{Accessor, Format};
 use super::region::{Region, Slot, View};
 use super::schema::Root;
+use crate::order::order_by_words;
 
 /// The uses of the bytes of a document.
 pub(super) struct Sharing {
@@ -118,16 +119,23 @@ impl Sharing {
 }
 
 /// The uses in order, each once.
-fn sorted(mut uses: Vec<(Region, Option<Format>)>) -> Vec<Use> {
-    let key = |format: Option<Format>| {
-        format.map(|format| (format.component.as_gl_enum(), format.normalized))
+fn sorted(uses: Vec<(Region, Option<Format>)>) -> Vec<Use> {
+    let key = |(region, format): &(Region, Option<Format>)| {
+        let [storage, start, stride, size, count] = region.words();
+        let format = format.map_or([0; 2], |format| {
+            let component = u64::from(format.component.as_gl_enum());
+            [component, u64::from(format.normalized)]
+        });
+        [storage, start, stride, size, count, format[0], format[1]]
     };
-    uses.sort_unstable_by(|(a, a_format), (b, b_format)| {
-        a.cmp(b).then_with(|| key(*a_format).cmp(&key(*b_format)))
-    });
-    uses.dedup();
+    let keys: Vec<[u64; 7]> = uses.iter().map(key).collect();
+    let mut order = order_by_words(&keys);
+    order.dedup_by_key(|index| keys.get(*index as usize));
     let mut reach = (0, 0);
-    let with_reach = uses.into_iter().map(|(region, format)| {
+    let once = order
+        .into_iter()
+        .filter_map(|index| uses.get(index as usize).cloned());
+    let with_reach = once.map(|(region, format)| {
         reach = reach.max((region.storage, region.end()));
         Use {
             region,

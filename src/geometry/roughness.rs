@@ -2,6 +2,7 @@
 
 use super::vertex_normals;
 use crate::mesh::{Mesh, Rings};
+use crate::order::order_by;
 use glam::DVec3;
 
 /// V roughnesses relative to their median, 0.25 to 3: the square root of how far the normals of a neighbourhood disagree.
@@ -21,13 +22,12 @@ pub fn roughness(mesh: &Mesh, rings: &Rings) -> Vec<f64> {
         spread = half_step(&spread, rings, 0.0);
     }
     let rough: Vec<f64> = spread.iter().map(|spread| spread.sqrt()).collect();
-    let mut sorted: Vec<f64> = rough
-        .iter()
-        .copied()
-        .filter(|&rough| rough > 1e-4)
-        .collect();
-    sorted.sort_by(f64::total_cmp);
-    let median = sorted.get(sorted.len() / 2).copied().unwrap_or(1.0);
+    // The bits of positive numbers are in the order of the numbers.
+    let curved = rough.iter().filter(|&&rough| rough > 1e-4);
+    let sorted = order_by(curved.map(|rough| rough.to_bits()));
+    let median = sorted
+        .get(sorted.len() / 2)
+        .map_or(1.0, |&(bits, _)| f64::from_bits(bits));
     rough
         .iter()
         .map(|rough| (rough / median).clamp(0.25, 3.0))

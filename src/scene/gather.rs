@@ -3,6 +3,7 @@
 use super::{MAX_ELEMENTS, Placement, Scene, SceneError, orbits};
 use crate::document::{Document, Node, Transform};
 use crate::mesh::Mesh;
+use crate::order::order_by_words;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use std::collections::BTreeMap;
 
@@ -166,17 +167,14 @@ impl Gathering {
                 order.push(corner);
             }
         }
-        let mut sorted: Vec<([u64; 3], usize)> = order
-            .iter()
-            .map(|&corner| bits(world(corner)))
-            .zip(0..)
-            .collect();
-        sorted.sort_unstable();
+        let places: Vec<[u64; 3]> = order.iter().map(|&corner| bits(world(corner))).collect();
+        let place = |corner: u32| places.get(corner as usize);
         let mut first = vec![0; order.len()];
-        for group in sorted.chunk_by(|a, b| a.0 == b.0) {
-            for &(_, corner) in group {
-                if let (Some(slot), Some((_, leader))) = (first.get_mut(corner), group.first()) {
-                    *slot = *leader;
+        for group in order_by_words(&places).chunk_by(|&a, &b| place(a) == place(b)) {
+            for &corner in group {
+                if let (Some(slot), Some(leader)) = (first.get_mut(corner as usize), group.first())
+                {
+                    *slot = *leader as usize;
                 }
             }
         }

@@ -2,9 +2,10 @@
 
 use super::Placement;
 use crate::document::{Document, DocumentError, Slot};
+use crate::order::order_by_words;
 
 /// One element as one placement shows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
     /// The element's bytes: equal for elements, of whatever accessors, that are the same.
     pub slot: Slot,
@@ -18,7 +19,7 @@ pub struct Use {
 
 /// All uses of stored elements, those of one slot side by side, placements ascending.
 pub fn uses(document: &Document, placements: &[Placement]) -> Result<Vec<Use>, DocumentError> {
-    let mut uses = Vec::new();
+    let mut uses: Vec<Use> = Vec::new();
     for (placement, shown) in placements.iter().enumerate() {
         let slots = document.slots(shown.accessor)?.into_iter().enumerate();
         uses.extend(
@@ -34,6 +35,13 @@ pub fn uses(document: &Document, placements: &[Placement]) -> Result<Vec<Use>, D
                 }),
         );
     }
-    uses.sort_unstable();
-    Ok(uses)
+    // They are in order of placement and element already.
+    let slots: Vec<[u64; 2]> = uses
+        .iter()
+        .map(|usage| [usage.slot.storage as u64, usage.slot.offset as u64])
+        .collect();
+    let order = order_by_words(&slots).into_iter();
+    Ok(order
+        .filter_map(|index| uses.get(index as usize).copied())
+        .collect())
 }

@@ -3,6 +3,7 @@
 use super::feature::{Features, Neighbourhoods};
 use crate::geometry::Pose;
 use crate::mesh::{Mesh, Rings};
+use crate::order::order_by;
 use glam::DVec3;
 
 /// What an address is a hash of.
@@ -98,10 +99,8 @@ pub fn choose(
 }
 
 fn num_distinct(addresses: &[u64], usable: &[u32]) -> usize {
-    let mut used: Vec<u64> = usable.iter().map(|&v| addresses[v as usize]).collect();
-    used.sort_unstable();
-    used.dedup();
-    used.len()
+    let used = order_by(usable.iter().map(|&v| addresses[v as usize]));
+    used.chunk_by(|a, b| a.0 == b.0).count()
 }
 
 /// V addresses by connectivity: two rounds of Weisfeiler-Leman refinement that start from the valences.

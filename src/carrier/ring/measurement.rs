@@ -8,7 +8,7 @@ use crate::code::SoftSymbol;
 use crate::geometry::Pose;
 use crate::key::Key;
 use crate::mesh::Mesh;
-use crate::order::order_by;
+use crate::order::{order_by, order_by_words};
 use std::f64::consts::TAU;
 
 /// Only rings with a smaller feature are read: one hypothesis each. Affine maps leave the flat rings as they are, but not
@@ -35,6 +35,20 @@ struct Sample {
     by_geometry: u64,
     cell: Cell,
     offset: f32,
+}
+
+impl Sample {
+    /// What samples are sorted by: equal for equal samples only.
+    fn rank(&self) -> [u64; 4] {
+        // Without the sign bit turned over, negative numbers would follow the others.
+        let cell = self
+            .cell
+            .map(|number| u64::from(number as u16 ^ 0x8000))
+            .into_iter()
+            .fold(0, |cell, number| cell << 16 | number);
+        let offset = u64::from(self.offset.to_bits());
+        [self.by_connectivity, self.by_geometry, cell, offset]
+    }
 }
 
 /// All rings of one address: the sum of `exp(2 pi i f / STEP)`, divided by the square root of their number, its length at
@@ -75,9 +89,10 @@ impl Measurement {
         Measurement::from_samples(samples.collect())
     }
 
-    fn from_samples(mut samples: Vec<Sample>) -> Measurement {
-        let rank = |s: &Sample| (s.by_connectivity, s.by_geometry, s.cell, s.offset.to_bits());
-        samples.sort_unstable_by_key(rank);
+    fn from_samples(samples: Vec<Sample>) -> Measurement {
+        let ranks: Vec<[u64; 4]> = samples.iter().map(Sample::rank).collect();
+        let order = order_by_words(&ranks).into_iter();
+        let samples: Vec<Sample> = order.map(|index| samples[index as usize]).collect();
         let sums = sums(&samples);
         Measurement { samples, sums }
     }

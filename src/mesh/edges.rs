@@ -3,7 +3,7 @@
 use super::Mesh;
 
 /// One side of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy)]
 struct Side {
     low: u32,
     high: u32,
@@ -21,41 +21,20 @@ pub struct Edges {
 impl Edges {
     /// Collects the edges of a mesh.
     pub fn new(mesh: &Mesh) -> Edges {
-        let sides = || {
-            let faces = mesh.triangles.iter().zip(0..);
-            faces.flat_map(|(&[a, b, c], face)| {
-                [(a, b), (b, c), (c, a)].map(|(from, to)| Side {
-                    low: from.min(to),
-                    high: from.max(to),
-                    face,
-                    ascending: from < to,
-                })
+        let faces = mesh.triangles.iter().zip(0..);
+        let sides = faces.flat_map(|(&[a, b, c], face)| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| Side {
+                low: from.min(to),
+                high: from.max(to),
+                face,
+                ascending: from < to,
             })
-        };
-        // A bucket for each lower vertex: there are only a few sides in each to be sorted.
-        let mut ends = vec![0; mesh.positions.len()];
-        sides().for_each(|side| ends[side.low as usize] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            (*end, total) = (total, total + *end);
-        }
-        let nothing = Side {
-            low: 0,
-            high: 0,
-            face: 0,
-            ascending: false,
-        };
-        let mut sorted = vec![nothing; total];
-        for side in sides() {
-            let slot = &mut ends[side.low as usize];
-            sorted[*slot] = side;
-            *slot += 1;
-        }
-        for bucket in sorted.chunk_by_mut(|a, b| a.low == b.low) {
-            bucket.sort_unstable();
-        }
+        });
+        // By the higher vertex, then by the lower: within an edge the faces are still in order.
+        let num_vertices = mesh.positions.len();
+        let by_high = by_vertex(&sides.collect::<Vec<_>>(), num_vertices, |side| side.high);
         Edges {
-            sides: sorted,
+            sides: by_vertex(&by_high, num_vertices, |side| side.low),
             num_faces: mesh.triangles.len(),
         }
     }
@@ -206,6 +185,25 @@ impl Edges {
             closed,
         }
     }
+}
+
+/// Sides in increasing order of one of their vertices, those of one vertex in the order given: a counting sort.
+fn by_vertex(sides: &[Side], num_vertices: usize, vertex: impl Fn(&Side) -> u32) -> Vec<Side> {
+    let mut starts = vec![0; num_vertices];
+    for side in sides {
+        starts[vertex(side) as usize] += 1;
+    }
+    let mut total = 0;
+    for start in &mut starts {
+        (*start, total) = (total, total + *start);
+    }
+    let mut sorted = sides.to_vec();
+    for side in sides {
+        let slot = &mut starts[vertex(side) as usize];
+        sorted[*slot] = *side;
+        *slot += 1;
+    }
+    sorted
 }
 
 fn find(parents: &mut [u32], mut face: u32) -> u32 {

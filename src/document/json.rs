@@ -155,10 +155,13 @@ impl FromJson<'_> for String {
 
 impl<'a, T: FromJson<'a>> FromJson<'a> for Vec<T> {
     fn from_json(raw: &'a RawValue, place: Place) -> Result<Self, DocumentError> {
-        let items = parse::<Vec<&RawValue>>(raw, place)?.into_iter().enumerate();
-        items
-            .map(|(index, item)| T::from_json(item, Place::Item(&place, index)))
-            .collect()
+        // A loop, since collecting results would have two copies of what reads an item.
+        let raws: Vec<&RawValue> = parse(raw, place)?;
+        let mut items = Self::with_capacity(raws.len());
+        for (index, item) in raws.into_iter().enumerate() {
+            items.push(T::from_json(item, Place::Item(&place, index))?);
+        }
+        Ok(items)
     }
 }
 

@@ -170,7 +170,9 @@ fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
     let mut options = EmbedOptions::default();
     let strength = field(value, "strength");
     if let Some(name) = strength.as_string() {
-        options.strength = name.parse().map_err(thrown)?;
+        // Numbers come as numbers; to read them from text takes 12 KB of tables and code.
+        options.strength =
+            Strength::from_name(&name).ok_or_else(|| thrown(Error::Strength(name)))?;
     } else if let Some(rms_rel) = strength.as_f64() {
         options.strength = Strength::new(rms_rel).map_err(thrown)?;
     } else if !strength.is_undefined() {

@@ -43,6 +43,16 @@ impl Strength {
         }
     }
 
+    /// A preset by its name: subtle, balanced or strong.
+    pub fn from_name(name: &str) -> Option<Strength> {
+        match name {
+            "subtle" => Some(Strength::SUBTLE),
+            "balanced" => Some(Strength::BALANCED),
+            "strong" => Some(Strength::STRONG),
+            _ => None,
+        }
+    }
+
     /// The fraction.
     pub fn rms_rel(self) -> f64 {
         self.0
@@ -54,11 +64,9 @@ impl std::str::FromStr for Strength {
 
     /// A preset's name or a number.
     fn from_str(text: &str) -> Result<Strength, Error> {
-        match text {
-            "subtle" => Ok(Strength::SUBTLE),
-            "balanced" => Ok(Strength::BALANCED),
-            "strong" => Ok(Strength::STRONG),
-            _ => text
+        match Strength::from_name(text) {
+            Some(preset) => Ok(preset),
+            None => text
                 .parse()
                 .map_err(|_| Error::Strength(text.to_owned()))
                 .and_then(Strength::new),

@@ -50,7 +50,8 @@ pub use key::Key;
 pub use progress::{Cancelled, Progress, Stage, ignore};
 pub use watermark::{
     CarrierCapacity, CarrierReading, EmbedOptions, EmbedReport, Embedding, Error, Extraction,
-    Inspection, Strength, Verdict, embed, extract, inspect, measure, verify,
+    Forecast, Inspection, Level, Strength, Verdict, detect, embed, extract, inspect, measure,
+    verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -15,6 +15,8 @@ pub enum Stage {
     Measure,
     /// Testing a measurement with a key.
     Test,
+    /// Trying what a mark survives.
+    Forecast,
 }
 
 impl Stage {
@@ -26,6 +28,7 @@ impl Stage {
             Stage::Write => "write",
             Stage::Measure => "measure",
             Stage::Test => "test",
+            Stage::Forecast => "forecast",
         }
     }
 }

@@ -65,7 +65,7 @@ fn cli_embeds_and_extracts() {
     assert_eq!(report["tag"], "ADA-1");
     assert_eq!(report["vertices"], 12_002);
     assert_eq!(report["read_back"]["verdict"], "found");
-    for stage in ["read", "embed", "write", "measure", "test"] {
+    for stage in ["read", "embed", "write", "measure", "test", "forecast"] {
         assert!(
             report["ms"][stage].is_number(),
             "{stage} is timed: {report}"
@@ -122,6 +122,41 @@ fn cli_takes_the_secret_from_the_environment_or_a_key_file() {
     fs::write(here.path("key"), [5; 31]).unwrap();
     let (code, report, _) = here.run("extract marked.glb --key-file key");
     assert_eq!((code, &report["error"]["code"]), (2, &"key.length".into()));
+}
+
+/// A list of keys finds the owner's and no other, and charges for its length.
+#[test]
+fn cli_tests_a_list_of_keys() {
+    let here = Folder::new("keys");
+    fs::write(here.path("key"), [0xab; 32]).unwrap();
+    here.run("embed model.glb marked.glb --key-file key --tag ADA-1");
+    here.run("measure marked.glb marked.mmev");
+    let list = format!("# ours\n{} Ada\n\n{}\n", "ab".repeat(32), "cd".repeat(32));
+    fs::write(here.path("keys.txt"), list).unwrap();
+    let (code, report, _) = here.run("test marked.mmev --keys keys.txt");
+    assert_eq!(code, 0);
+    assert_eq!(report["num_keys"], 2);
+    assert_eq!(report["ln_charge"], libm::log(2.0));
+    let keys = report["keys"].as_array().unwrap();
+    assert_eq!(keys[0]["key"], "Ada");
+    assert_eq!(
+        (&keys[0]["found"], &keys[0]["tag"]),
+        (&true.into(), &"ADA-1".into())
+    );
+    assert_eq!(
+        (&keys[1]["key"], &keys[1]["found"]),
+        (&"line 4".into(), &false.into())
+    );
+
+    fs::write(here.path("keys.txt"), "not a key").unwrap();
+    let (code, report, _) = here.run("test marked.mmev --keys keys.txt");
+    assert_eq!(code, 2);
+    assert!(
+        report["error"]["message"]
+            .as_str()
+            .unwrap()
+            .contains("line 1")
+    );
 }
 
 #[test]

@@ -3,10 +3,11 @@
 //! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input.
 
 use clap::{Args, Parser, Subcommand};
+use meshmark::detection::{LN_P_FOUND, union};
 use meshmark::document::DocumentError;
 use meshmark::{
     Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage,
-    Strength, Verdict, embed, extract, inspect, measure, verify,
+    Strength, Verdict, detect, embed, extract, inspect, measure, verify,
 };
 use serde_json::{Map, Value, json};
 use std::error::Error as StdError;
@@ -15,6 +16,9 @@ use std::ops::ControlFlow;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// What evidence begins with.
+const EVIDENCE: &[u8] = b"MMEV";
 
 const FOUND: u8 = 0;
 const NOT_FOUND: u8 = 1;
@@ -72,6 +76,14 @@ enum Command {
         input: PathBuf,
         /// Where the evidence goes
         evidence: PathBuf,
+    },
+    /// Test a model, or measured evidence, with a list of keys
+    Test {
+        /// .glb, .gltf, or a file that `measure` wrote
+        input: PathBuf,
+        /// File with a key in each line: 64 hexadecimal digits, and a name if you like
+        #[arg(long, value_name = "FILE")]
+        keys: PathBuf,
     },
     /// Describe a model and what it could hold
     Inspect {
@@ -169,9 +181,7 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
         }
         Command::Extract { input, owner } => {
             let key = owner.key()?;
-            let evidence = evidence(&input, &mut clock)?;
-            clock.start("test");
-            judge(&extract(&evidence, &key), clock)
+            judge(&examine(&input, &key, None, &mut clock)?, clock)
         }
         Command::Verify {
             input,
@@ -180,15 +190,17 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
         } => {
             let payload = payload.read()?;
             let key = owner.key()?;
-            let evidence = evidence(&input, &mut clock)?;
-            clock.start("test");
-            judge(&verify(&evidence, &key, payload), clock)
+            judge(&examine(&input, &key, Some(payload), &mut clock)?, clock)
         }
         Command::Measure { input, evidence } => {
             let (model, files) = open(&input)?;
             let bytes = measure(&model, &files, &mut clock)?.to_bytes();
             store(&evidence, &bytes)?;
             Ok((report(&json!({ "bytes": bytes.len() }), clock)?, FOUND))
+        }
+        Command::Test { input, keys } => {
+            let (readings, code) = test(&input, &keys, &mut clock)?;
+            Ok((report(&readings, clock)?, code))
         }
         Command::Inspect { input } => {
             let (model, files) = open(&input)?;
@@ -276,12 +288,85 @@ impl Owner {
     }
 }
 
-fn evidence(input: &Path, clock: &mut Clock) -> Result<Evidence, Failure> {
+/// Reads a model, or what was measured of one, with a key.
+fn examine(
+    input: &Path,
+    key: &Key,
+    expected: Option<Payload>,
+    clock: &mut Clock,
+) -> Result<Extraction, Failure> {
     let (model, files) = open(input)?;
-    if model.starts_with(b"MMEV") {
-        return Ok(Evidence::from_bytes(&model).map_err(Error::from)?);
+    if !model.starts_with(EVIDENCE) {
+        return Ok(detect(&model, &files, key, expected, clock)?);
     }
-    Ok(measure(&model, &files, clock)?)
+    let evidence = Evidence::from_bytes(&model).map_err(Error::from)?;
+    clock.start("test");
+    Ok(match expected {
+        Some(payload) => verify(&evidence, key, payload),
+        None => extract(&evidence, key),
+    })
+}
+
+/// Tests evidence with every key of a list. That there are many is charged: a name is not found by asking often enough.
+fn test(input: &Path, keys: &Path, clock: &mut Clock) -> Result<(Value, u8), Failure> {
+    let (model, files) = open(input)?;
+    let keys = read_keys(&String::from_utf8(load(keys)?)?)?;
+    let evidence = if model.starts_with(EVIDENCE) {
+        Evidence::from_bytes(&model).map_err(Error::from)?
+    } else {
+        measure(&model, &files, clock)?
+    };
+    clock.start("test");
+    let charge = libm::log(keys.len() as f64);
+    let mut code = NOT_FOUND;
+    let mut readings = Vec::new();
+    for (name, key) in &keys {
+        let extraction = extract(&evidence, key);
+        let ln_p = union(extraction.ln_p, charge);
+        let is_found = extraction.verdict == Verdict::Found && ln_p <= LN_P_FOUND;
+        if is_found {
+            code = FOUND;
+        }
+        readings.push(json!({
+            "key": name,
+            "found": is_found,
+            "verdict": extraction.verdict,
+            "tag": extraction.tag,
+            "number": extraction.number,
+            "ln_p": ln_p,
+        }));
+    }
+    Ok((
+        json!({ "num_keys": keys.len(), "ln_charge": charge, "keys": readings }),
+        code,
+    ))
+}
+
+/// Keys from lines of 64 hexadecimal digits, each with a name after them if it has one. Lines that are empty or begin with `#`
+/// say nothing.
+fn read_keys(text: &str) -> Result<Vec<(String, Key)>, Failure> {
+    let mut keys = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let (digits, name) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let bytes: Option<Vec<u8>> = (0..digits.len())
+            .step_by(2)
+            .map(|at| u8::from_str_radix(digits.get(at..at + 2)?, 16).ok())
+            .collect();
+        let key = bytes.and_then(|bytes| Key::from_bytes(&bytes).ok());
+        let key =
+            key.ok_or_else(|| format!("line {number} of the keys is not 64 hexadecimal digits"))?;
+        let name = if name.is_empty() {
+            format!("line {number}")
+        } else {
+            name.trim().to_owned()
+        };
+        keys.push((name, key));
+    }
+    Ok(keys)
 }
 
 /// A model and the external buffers that it names, which are looked for beside it.

@@ -8,6 +8,7 @@ pub mod ring;
 pub mod solid;
 
 use crate::code::{Codeword, SoftSymbol};
+use crate::detection::Statistic;
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::{Cancelled, Progress};
@@ -46,6 +47,9 @@ impl Carrier {
     /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
     pub const SHARE_ON_TOP: f64 = 0.25;
 
+    /// The exponent that RING has to reach on top of SOLID to be worth what it takes from that: what a mark of 48 bits needs.
+    pub const WORTH_ON_TOP: f64 = 80.0;
+
     /// The displacement of all V vertices that gives the host the mark.
     pub fn embed(
         self,
@@ -68,6 +72,8 @@ pub struct Host<'a> {
     pub admissible: &'a Admissible,
     /// Limit of the RMS displacement over all vertices, as a fraction of the diagonal.
     pub rms_rel: f64,
+    /// Whether another carrier's mark is in the mesh already.
+    pub on_top: bool,
 }
 
 /// What is to be embedded.
@@ -79,19 +85,33 @@ pub struct Mark<'a> {
 }
 
 /// How a key reads a measurement.
+#[derive(Default)]
 pub struct Reading {
-    /// Ways of reading that were declared before any key was known: all of them are charged.
-    pub num_declared: usize,
-    /// Those that were followed, for the others had nothing to say.
+    /// The ways of reading that were followed, for the others had nothing to say.
     pub hypotheses: Vec<Hypothesis>,
     /// Distinct addresses that were there to be read, whoever's they are.
     pub num_addresses: usize,
+}
+
+impl Reading {
+    /// The exponent of the bound for a codeword that is known, in the hypothesis that it fits best, before charges.
+    pub fn exponent(&self, codeword: &Codeword) -> f64 {
+        let fit = |hypothesis: &Hypothesis| {
+            let symbols = hypothesis.symbols.iter();
+            let signed = symbols.map(|soft| (soft.value * codeword.sign(soft.symbol), soft.weight));
+            -Statistic::new(signed).ln_p()
+        };
+        self.hypotheses.iter().map(fit).fold(0.0, f64::max)
+    }
 }
 
 /// One way of reading a measurement: its soft symbols.
 pub struct Hypothesis {
     /// One for each address that is the key's.
     pub symbols: Vec<SoftSymbol>,
+    /// What this way of reading is charged: the logarithm of the inverse of its share in the probability of a false alarm.
+    /// The shares of all ways that were declared before any key was known add up to 1 at most.
+    pub ln_num_tests: f64,
 }
 
 /// Why a mark could not be embedded.

@@ -1,5 +1,6 @@
 //! Algorithms on a mesh, one per file.
 
+mod arc;
 mod distortion;
 mod normal;
 mod orientation;
@@ -9,10 +10,11 @@ mod roughness;
 pub mod spectral;
 mod surface;
 
+pub use arc::refined;
 pub use distortion::{Distortion, diagonal};
 pub use normal::vertex_normals;
 pub use orientation::outward;
 pub use pose::Pose;
-pub use quadrature::{Sample, samples};
+pub use quadrature::{Quadrature, Sample};
 pub use roughness::roughness;
 pub use surface::{Nearest, Surface};

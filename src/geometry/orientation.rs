@@ -3,8 +3,11 @@
 use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
+/// A patch whose signed volume is smaller than this, times the area to the power 3/2, has no inside to speak of.
+const FLAT: f64 = 1e-3;
+
 /// The triangles of a mesh with consistent winding within each patch of two-faced edges, and each patch turned so that its
-/// signed volume about its own area centroid is not negative.
+/// signed volume about its own area centroid is positive; flat ones face as most of their area did.
 pub fn outward(mesh: &Mesh) -> Vec<[u32; 3]> {
     let winding = Edges::new(mesh).winding();
     let turn = |(&[a, b, c], &flip): (&[u32; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
@@ -15,24 +18,46 @@ pub fn outward(mesh: &Mesh) -> Vec<[u32; 3]> {
         .map(turn)
         .collect();
 
-    let mut centroids = vec![(0.0, DVec3::ZERO); winding.num_patches];
-    for (&triangle, &patch) in triangles.iter().zip(&winding.patches) {
+    let mut patches = vec![Patch::default(); winding.num_patches];
+    for ((&triangle, &number), &flip) in triangles.iter().zip(&winding.patches).zip(&winding.flips)
+    {
         let [a, b, c] = mesh.corners(triangle);
-        let area = (b - a).cross(c - a).length();
-        let (total, sum) = &mut centroids[patch as usize];
-        *total += area;
-        *sum += (a + b + c) * (area / 3.0);
+        let area = (b - a).cross(c - a).length() * 0.5;
+        let patch = &mut patches[number as usize];
+        patch.area += area;
+        patch.first += (a + b + c) * (area / 3.0);
+        patch.kept += if flip { -area } else { area };
     }
-    let mut volumes = vec![0.0; winding.num_patches];
-    for (&triangle, &patch) in triangles.iter().zip(&winding.patches) {
-        let (total, sum) = centroids[patch as usize];
-        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - sum / total);
-        volumes[patch as usize] += a.dot(b.cross(c));
+    for (&triangle, &number) in triangles.iter().zip(&winding.patches) {
+        let patch = &mut patches[number as usize];
+        let centroid = patch.first / patch.area;
+        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - centroid);
+        patch.volume += a.dot(b.cross(c)) / 6.0;
     }
-    for (triangle, &patch) in triangles.iter_mut().zip(&winding.patches) {
-        if volumes[patch as usize] < 0.0 {
+    for (triangle, &number) in triangles.iter_mut().zip(&winding.patches) {
+        if patches[number as usize].faces_inwards() {
             triangle.swap(1, 2);
         }
     }
     triangles
+}
+
+/// Sums over a patch with consistent winding.
+#[derive(Clone, Default)]
+struct Patch {
+    area: f64,
+    first: DVec3,
+    /// Area that faces as it did, less area that was turned.
+    kept: f64,
+    volume: f64,
+}
+
+impl Patch {
+    fn faces_inwards(&self) -> bool {
+        if self.volume.abs() > FLAT * self.area * self.area.sqrt() {
+            self.volume < 0.0
+        } else {
+            self.kept < 0.0
+        }
+    }
 }

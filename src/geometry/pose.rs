@@ -2,7 +2,7 @@
 //!
 //! Moments are integrals over the surface, exact for triangles, so tessellation does not matter. O(F).
 
-use crate::mesh::{Edges, Mesh};
+use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
 
 /// The frame of a surface.
@@ -18,6 +18,9 @@ pub struct Pose {
     /// Share of each axis in the trace, decreasing; together 1.
     pub spreads: DVec3,
 }
+
+/// Axes whose spreads have a greater ratio than this may lie anywhere in their plane.
+const DEGENERATE: f64 = 0.98;
 
 impl Pose {
     /// The pose of a mesh; `None` without area.
@@ -48,43 +51,42 @@ impl Pose {
         })
     }
 
-    /// The pose by volume moments: quieter than [`Pose::of`] under every change of tessellation. Boundaries are closed by
-    /// fans to their centroids. `None` for surfaces that enclose too little to have such moments.
+    /// The pose by volume moments: quieter than [`Pose::of`] under every change of tessellation. Boundaries, the directed
+    /// edges with one face, are closed by fans to their centroids. `None` for surfaces that enclose too little to have such
+    /// moments.
     ///
     /// The mesh's triangles have to face outwards, as [`outward`](super::outward) makes them.
-    pub fn of_volume(mesh: &Mesh) -> Option<Pose> {
-        let corners: Vec<[DVec3; 3]> = mesh
+    pub fn of_volume(mesh: &Mesh, boundary: &[(u32, u32)]) -> Option<Pose> {
+        // Any point near the surface will do to measure from.
+        let origin = mesh.positions.iter().sum::<DVec3>() / mesh.positions.len() as f64;
+        let caps = caps(mesh, boundary);
+        let faces = mesh
             .triangles
             .iter()
-            .map(|&triangle| mesh.corners(triangle))
-            .chain(caps(mesh))
-            .collect();
-        let (mut total_area, mut first) = (0.0, DVec3::ZERO);
-        for &[a, b, c] in &corners {
-            let area = (b - a).cross(c - a).length() * 0.5;
-            total_area += area;
-            first += (a + b + c) * (area / 3.0);
+            .map(|&triangle| mesh.corners(triangle));
+        let (mut area, mut volume, mut first, mut second) = (0.0, 0.0, DVec3::ZERO, [0.0; 6]);
+        for corners in faces.chain(caps) {
+            let [p, q, r] = corners.map(|corner| corner - origin);
+            area += (q - p).cross(r - p).length() * 0.5;
+            let part = p.dot(q.cross(r)) / 6.0;
+            let sum = p + q + r;
+            volume += part;
+            first += sum * part;
+            let products =
+                |i: usize, j: usize| sum[i] * sum[j] + p[i] * p[j] + q[i] * q[j] + r[i] * r[j];
+            let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+            for (entry, (i, j)) in second.iter_mut().zip(pairs) {
+                *entry += products(i, j) * part;
+            }
         }
-        let origin = first / total_area;
-        let tetrahedra = || {
-            corners.iter().map(|corners| {
-                let [p, q, r] = corners.map(|corner| corner - origin);
-                (p.dot(q.cross(r)) / 6.0, [p, q, r])
-            })
-        };
-        let volume: f64 = tetrahedra().map(|(volume, _)| volume).sum();
-        let encloses = volume.abs() > 0.01 * total_area * total_area.sqrt();
+        let encloses = volume.abs() > 0.01 * area * area.sqrt();
         if !encloses {
             return None;
         }
-        let centre: DVec3 = tetrahedra()
-            .map(|(v, [p, q, r])| (p + q + r) * v)
-            .sum::<DVec3>()
-            / (4.0 * volume);
-        let moments: DMat3 = tetrahedra()
-            .map(|(v, [p, q, r])| (outer(p + q + r) + outer(p) + outer(q) + outer(r)) * v)
-            .sum::<DMat3>();
-        let covariance = moments * (1.0 / (20.0 * volume)) - outer(centre);
+        let centre = first / (4.0 * volume);
+        let [xx, xy, xz, yy, yz, zz] = second.map(|entry| entry / (20.0 * volume));
+        let rows = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
+        let covariance = DMat3::from_cols_array(&rows) - outer(centre);
         let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
         if !(trace > 0.0 && trace.is_finite()) {
             return None;
@@ -98,13 +100,31 @@ impl Pose {
         })
     }
 
-    /// The same frame with the signs of its axes nearest to another's.
+    /// The same frame with its axes nearest to another's: their signs, and where spreads are so near each other that axes may
+    /// lie anywhere in their plane, their directions in it.
     pub fn aligned_with(self, other: &Pose) -> Pose {
+        let near = |a: f64, b: f64| b > DEGENERATE * a;
+        let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        let [other_x, other_y, other_z] = [other.axes.x_axis, other.axes.y_axis, other.axes.z_axis];
         let sign = |axis: DVec3, other: DVec3| if axis.dot(other) < 0.0 { -axis } else { axis };
-        let (first, second) = (
-            sign(self.axes.x_axis, other.axes.x_axis),
-            sign(self.axes.y_axis, other.axes.y_axis),
-        );
+        let across =
+            |axis: DVec3, other: DVec3| (other - axis * other.dot(axis)).normalize_or(other);
+        let (first, second) = match (
+            near(self.spreads.x, self.spreads.y),
+            near(self.spreads.y, self.spreads.z),
+        ) {
+            (false, false) => (sign(x, other_x), sign(y, other_y)),
+            (true, false) => {
+                let third = sign(z, other_z);
+                let first = across(third, other_x);
+                (first, third.cross(first))
+            }
+            (false, true) => {
+                let first = sign(x, other_x);
+                (first, across(first, other_y))
+            }
+            (true, true) => (other_x, other_y),
+        };
         Pose {
             axes: DMat3::from_cols(first, second, first.cross(second)),
             ..self
@@ -125,19 +145,18 @@ impl Pose {
 }
 
 /// Triangles that close every connected set of boundary edges by a fan to the edges' length-weighted centroid.
-fn caps(mesh: &Mesh) -> Vec<[DVec3; 3]> {
-    let boundary: Vec<(u32, u32)> = Edges::new(mesh).boundary().collect();
+fn caps(mesh: &Mesh, boundary: &[(u32, u32)]) -> Vec<[DVec3; 3]> {
     let mut names: Vec<u32> = boundary.iter().flat_map(|&(a, b)| [a, b]).collect();
     names.sort_unstable();
     names.dedup();
     let index = |vertex: u32| names.partition_point(|&name| name < vertex);
     let mut parents: Vec<usize> = (0..names.len()).collect();
-    for &(a, b) in &boundary {
+    for &(a, b) in boundary {
         let (a, b) = (root(&mut parents, index(a)), root(&mut parents, index(b)));
         parents[b] = a;
     }
     let mut centres = vec![(0.0, DVec3::ZERO); names.len()];
-    for &(a, b) in &boundary {
+    for &(a, b) in boundary {
         let (p, q) = (mesh.positions[a as usize], mesh.positions[b as usize]);
         let length = p.distance(q);
         let (total, sum) = &mut centres[root(&mut parents, index(a))];
@@ -145,7 +164,7 @@ fn caps(mesh: &Mesh) -> Vec<[DVec3; 3]> {
         *sum += (p + q) * (0.5 * length);
     }
     let mut fan = Vec::with_capacity(boundary.len());
-    for &(a, b) in &boundary {
+    for &(a, b) in boundary {
         let (total, sum) = centres[root(&mut parents, index(a))];
         if total > 0.0 {
             fan.push([

@@ -1,13 +1,10 @@
 //! Integrals over a surface: as many sample points as a given resolution needs.
 
-use crate::mesh::Mesh;
 use glam::DVec3;
 
 /// One part of a triangle, seen from its centroid.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Index of the triangle.
-    pub face: u32,
     /// Weights of the triangle's corners at the part's centroid.
     pub weights: [f64; 3],
     /// The centroid, in scene units.
@@ -19,30 +16,38 @@ pub struct Sample {
 /// Splits are no deeper than this: 4096 parts.
 const DEEPEST: u32 = 6;
 
-/// Samples of all triangles: each is split into four until its edges are no longer than `max_edge`. Moments of the first
-/// order are exact in every part. O(number of parts).
-pub fn samples(mesh: &Mesh, max_edge: f64) -> Vec<Sample> {
-    let parts: Vec<Vec<[f64; 3]>> = (0..=DEEPEST).map(centroids).collect();
-    let mut samples = Vec::with_capacity(mesh.triangles.len());
-    for (&triangle, face) in mesh.triangles.iter().zip(0..) {
-        let [a, b, c] = mesh.corners(triangle);
+/// Splits triangles into parts whose edges are no longer than a limit.
+pub struct Quadrature {
+    max_edge: f64,
+    /// By depth, the centroids of a triangle's `4^depth` equal parts, in barycentric coordinates.
+    centroids: Vec<Vec<[f64; 3]>>,
+}
+
+impl Quadrature {
+    /// A quadrature with edges up to `max_edge`, in scene units.
+    pub fn new(max_edge: f64) -> Quadrature {
+        Quadrature {
+            max_edge,
+            centroids: (0..=DEEPEST).map(centroids).collect(),
+        }
+    }
+
+    /// The samples of a triangle: one for each part. Moments of the first order are exact in every part.
+    pub fn samples(&self, [a, b, c]: [DVec3; 3]) -> impl Iterator<Item = Sample> {
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let depth = (0..DEEPEST)
-            .find(|&depth| longest <= max_edge * f64::from(1 << depth))
+            .find(|&depth| longest <= self.max_edge * f64::from(1 << depth))
             .unwrap_or(DEEPEST);
-        let weights = &parts[depth as usize];
+        let weights = &self.centroids[depth as usize];
         let area = (b - a).cross(c - a) * (0.5 / weights.len() as f64);
-        samples.extend(weights.iter().map(|&weights| Sample {
-            face,
+        weights.iter().map(move |&weights| Sample {
             weights,
             point: a * weights[0] + b * weights[1] + c * weights[2],
             area,
-        }));
+        })
     }
-    samples
 }
 
-/// The centroids of a triangle's `4^depth` equal parts, in barycentric coordinates.
 fn centroids(depth: u32) -> Vec<[f64; 3]> {
     let side = 1u32 << depth;
     let third = 1.0 / 3.0;

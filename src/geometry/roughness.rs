@@ -2,36 +2,43 @@
 
 use super::vertex_normals;
 use crate::mesh::{Mesh, Rings};
-use crate::order::order_by;
 use glam::DVec3;
 
-/// V roughnesses relative to their median, 0.25 to 3: the square root of how far the normals of a neighbourhood disagree.
+/// V roughnesses: the RMS angle, in radians, by which the vertex normals of a neighbourhood leave a smooth field.
 ///
-/// Normals are averaged over 12 half-steps of the umbrella operator; what that takes from their length is averaged in turn.
-/// (Perceptual metrics such as MSDM, Lavoue et al. 2006, rate distortions by the roughness that masks them.)
+/// A smooth field is the normals after 6 half-steps of the umbrella operator. Curvature alone does not count, and neither
+/// does a lone crease: of the neighbourhoods that a vertex is in, the smoothest is taken. (Perceptual metrics such as MSDM,
+/// Lavoue et al. 2006, rate distortions by the roughness that masks them.)
 pub fn roughness(mesh: &Mesh, rings: &Rings) -> Vec<f64> {
-    let mut normals = vertex_normals(mesh);
-    for _ in 0..12 {
-        normals = half_step(&normals, rings, DVec3::ZERO);
+    let normals = vertex_normals(mesh);
+    let mut smooth = normals.clone();
+    for _ in 0..6 {
+        smooth = half_step(&smooth, rings, DVec3::ZERO);
     }
-    let mut spread: Vec<f64> = normals
+    let mut square: Vec<f64> = normals
         .iter()
-        .map(|normal| (1.0 - normal.length()).max(0.0))
+        .zip(&smooth)
+        .map(|(normal, smooth)| normal.distance_squared(smooth.normalize_or_zero()))
         .collect();
     for _ in 0..6 {
-        spread = half_step(&spread, rings, 0.0);
+        square = half_step(&square, rings, 0.0);
     }
-    let rough: Vec<f64> = spread.iter().map(|spread| spread.sqrt()).collect();
-    // The bits of positive numbers are in the order of the numbers.
-    let curved = rough.iter().filter(|&&rough| rough > 1e-4);
-    let sorted = order_by(curved.map(|rough| rough.to_bits()));
-    let median = sorted
-        .get(sorted.len() / 2)
-        .map_or(1.0, |&(bits, _)| f64::from_bits(bits));
-    rough
-        .iter()
-        .map(|rough| (rough / median).clamp(0.25, 3.0))
-        .collect()
+    for _ in 0..4 {
+        square = least(&square, rings);
+    }
+    for _ in 0..6 {
+        square = half_step(&square, rings, 0.0);
+    }
+    square.iter().map(|square| square.sqrt()).collect()
+}
+
+/// The least of each value and its neighbours'.
+fn least(values: &[f64], rings: &Rings) -> Vec<f64> {
+    let of = |v: usize| {
+        let neighbours = rings.neighbours(v).iter().map(|&n| values[n as usize]);
+        neighbours.fold(values[v], f64::min)
+    };
+    (0..values.len()).map(of).collect()
 }
 
 /// Half of each value and half of its neighbours' mean.

@@ -12,6 +12,9 @@ use std::f64::consts::PI;
 /// Degree of the polynomials.
 const DEGREE: usize = 60;
 
+/// Polynomials that are at hand at a time: each result is passed over once for each block of them.
+const BLOCK: usize = 4;
+
 /// A smoothing to undo.
 #[derive(Clone, Copy, Debug)]
 pub struct InverseFilter {
@@ -79,19 +82,25 @@ pub fn filtered(positions: &[DVec3], rings: &Rings, filters: &[InverseFilter]) -
     let mut results = vec![vec![DVec3::ZERO; positions.len()]; filters.len()];
     let mut previous = positions.to_vec();
     let mut current = average(positions);
-    for n in 0..=DEGREE {
-        for (result, coefficients) in results.iter_mut().zip(&coefficients) {
-            result
-                .iter_mut()
-                .zip(&previous)
-                .for_each(|(sum, x)| *sum += *x * coefficients[n]);
-        }
-        let next = average(&current)
-            .iter()
-            .zip(&previous)
-            .map(|(next, x)| *next * 2.0 - *x)
+    for first in (0..=DEGREE).step_by(BLOCK) {
+        let block: Vec<Vec<DVec3>> = (first..(first + BLOCK).min(DEGREE + 1))
+            .map(|_| {
+                let averaged = average(&current);
+                let next = averaged
+                    .iter()
+                    .zip(&previous)
+                    .map(|(next, x)| *next * 2.0 - *x);
+                let next = next.collect();
+                std::mem::replace(&mut previous, std::mem::replace(&mut current, next))
+            })
             .collect();
-        previous = std::mem::replace(&mut current, next);
+        for (result, coefficients) in results.iter_mut().zip(&coefficients) {
+            for (vertex, sum) in result.iter_mut().enumerate() {
+                for (x, c) in block.iter().zip(&coefficients[first..]) {
+                    *sum += x[vertex] * *c;
+                }
+            }
+        }
     }
     results
 }

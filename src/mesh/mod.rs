@@ -28,6 +28,15 @@ impl Mesh {
         }
     }
 
+    /// The area of all triangles, in squared scene units.
+    pub fn area(&self) -> f64 {
+        let double = |&triangle: &[u32; 3]| {
+            let [a, b, c] = self.corners(triangle);
+            (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(double).sum::<f64>() * 0.5
+    }
+
     /// The corners of a triangle.
     pub fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])

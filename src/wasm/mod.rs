@@ -80,6 +80,28 @@ pub fn measure(
     Ok(evidence.to_bytes())
 }
 
+/// Reads a suspect in one go.
+#[wasm_bindgen(skip_typescript)]
+pub fn detect(
+    model: &[u8],
+    files: JsValue,
+    key: &[u8],
+    expected: JsValue,
+    on_progress: Option<Function>,
+    signal: Option<AbortSignal>,
+) -> Result<JsValue, JsValue> {
+    let expected = match expected.is_undefined() {
+        true => None,
+        false => Some(payload_from(&expected)?),
+    };
+    let mut listener = Listener {
+        on_progress,
+        signal,
+    };
+    let (files, key) = (files_from(&files)?, key_from(key)?);
+    encoded(&watermark::detect(model, &files, &key, expected, &mut listener).map_err(thrown)?)
+}
+
 /// Reads a payload.
 #[wasm_bindgen(skip_typescript)]
 pub fn extract(evidence: &[u8], key: &[u8]) -> Result<JsValue, JsValue> {

@@ -1,8 +1,9 @@
 //! Embedding: read, displace, write, and read the result back as any detector would.
 
-use super::{EmbedOptions, EmbedReport, Error, Verdict, extract, measure};
+use super::forecast::forecast;
+use super::{EmbedOptions, EmbedReport, Error, Verdict, detect};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, CarrierError, Host, Mark};
+use crate::carrier::{Carrier, CarrierError, Host, Mark, ring};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files};
@@ -68,13 +69,28 @@ pub fn embed(
             mesh: &mesh,
             admissible: &scene.admissible,
             rms_rel,
+            on_top: !is_first,
         };
         match carrier.embed(&host, &mark, progress) {
-            Ok(displacement) => mesh
-                .positions
-                .iter_mut()
-                .zip(displacement)
-                .for_each(|(position, d)| *position += d),
+            Ok(displacement) => {
+                let moved = mesh.positions.iter().zip(displacement).map(|(p, d)| *p + d);
+                let marked = mesh.with_positions(moved.collect());
+                let reached = match carrier {
+                    Carrier::Ring if !is_first => ring::Measurement::new(&marked)
+                        .read(key)
+                        .exponent(&codeword),
+                    _ => f64::INFINITY,
+                };
+                if reached < Carrier::WORTH_ON_TOP {
+                    refusals.push(CarrierError::TooWeak {
+                        carrier,
+                        reached,
+                        needed: Carrier::WORTH_ON_TOP,
+                    });
+                } else {
+                    mesh = marked;
+                }
+            }
             Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(refusal) => refusals.push(refusal),
         }
@@ -93,16 +109,14 @@ pub fn embed(
         .map(|(marked, host)| (*marked - *host) * scale)
         .collect();
     scene.scatter(&mut document, &displacement)?;
-    let distortion = Distortion::between(&scene.mesh.positions, &scene.positions_in(&document)?);
+    let marked = scene.mesh.with_positions(scene.positions_in(&document)?);
+    let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);
     let written = document.write()?;
     step(progress, Stage::Write, 1.0)?;
 
     let mut marked_files = files.clone();
     marked_files.extend(written.files.clone());
-    let evidence = measure(&written.model, &marked_files, progress)?;
-    step(progress, Stage::Test, 0.0)?;
-    let read_back = extract(&evidence, key);
-    step(progress, Stage::Test, 1.0)?;
+    let read_back = detect(&written.model, &marked_files, key, None, progress)?;
     if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
         let addresses = read_back
             .carriers
@@ -111,6 +125,7 @@ pub fn embed(
             .sum();
         return Err(Error::Unreadable { addresses });
     }
+    let forecast = forecast(&scene.mesh, &marked, key, payload, progress)?;
     let report = EmbedReport {
         tag: payload.tag(),
         number: payload.number(),
@@ -121,6 +136,7 @@ pub fn embed(
         max_rel: distortion.max_rel,
         strength: options.strength.rms_rel(),
         read_back,
+        forecast,
         host_sha256: sha256(model),
         marked_sha256: sha256(&written.model),
     };

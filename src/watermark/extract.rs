@@ -3,13 +3,13 @@
 use super::error::Error;
 use super::report::{CarrierReading, Extraction, Verdict};
 use crate::bits::Payload;
-use crate::carrier::{self, Carrier, Hypothesis};
+use crate::carrier::{self, Carrier, Hypothesis, ring, solid};
 use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
 use crate::document::{Document, Files};
 use crate::evidence::Evidence;
 use crate::key::Key;
-use crate::progress::{Progress, Stage, step};
+use crate::progress::{Progress, Stage, ignore, step};
 use crate::scene::Scene;
 use std::f64::consts::LN_2;
 
@@ -45,15 +45,31 @@ pub fn verify(evidence: &Evidence, key: &Key, expected: Payload) -> Extraction {
     read(evidence, key, Some(expected))
 }
 
+/// Reads a suspect in one go, ending as soon as it is sure: a marked model is mostly found before anything but itself was
+/// measured. With `expected` the payload is tested as [`verify`] does it, else read as [`extract`] does.
+pub fn detect(
+    model: &[u8],
+    files: &Files,
+    key: &Key,
+    expected: Option<Payload>,
+    progress: &mut dyn Progress,
+) -> Result<Extraction, Error> {
+    step(progress, Stage::Read, 0.0)?;
+    let mesh = Scene::gather(&Document::read(model, files)?)?.mesh;
+    step(progress, Stage::Measure, 0.0)?;
+    let ring = ring::Measurement::new(&mesh).read(key);
+    step(progress, Stage::Measure, 0.5)?;
+    let surfaces = solid::Surfaces::new(&mesh);
+    step(progress, Stage::Test, 0.0)?;
+    let solid = surfaces.read(usize::MAX, key, progress)?;
+    let conclusion = Reader::new(key, expected).conclude(&solid, &ring);
+    step(progress, Stage::Test, 1.0)?;
+    Ok(conclusion)
+}
+
 fn read(evidence: &Evidence, key: &Key, expected: Option<Payload>) -> Extraction {
-    let reader = Reader {
-        check: Checked::new(key),
-        expected,
-    };
-    conclude(vec![
-        reader.read(Carrier::Solid, &evidence.solid.read(key)),
-        reader.read(Carrier::Ring, &evidence.ring.read(key)),
-    ])
+    let solid = evidence.solid.read(key, &mut ignore).unwrap_or_default();
+    Reader::new(key, expected).conclude(&solid, &evidence.ring.read(key))
 }
 
 /// A carrier's reading, and what else the verdict depends on. All bounds are charged for the carrier's own choices.
@@ -72,21 +88,34 @@ struct Candidate {
     payload: Payload,
     /// All symbols against the payload.
     all: Statistic,
-    /// Bound before charges.
+    /// Bound, all choices within the carrier charged.
     ln_p: f64,
 }
 
-struct Reader {
+pub(super) struct Reader {
     check: Checked,
     expected: Option<Payload>,
 }
 
 impl Reader {
+    pub(super) fn new(key: &Key, expected: Option<Payload>) -> Reader {
+        Reader {
+            check: Checked::new(key),
+            expected,
+        }
+    }
+
+    pub(super) fn conclude(&self, solid: &carrier::Reading, ring: &carrier::Reading) -> Extraction {
+        conclude(vec![
+            self.read(Carrier::Solid, solid),
+            self.read(Carrier::Ring, ring),
+        ])
+    }
+
     fn read(&self, name: Carrier, reading: &carrier::Reading) -> Reading {
         let hypotheses = &reading.hypotheses;
-        let charge = self.charge(reading.num_declared);
         let (candidate, other) = match (
-            likeliest(hypotheses.iter().filter_map(|h| self.decode(h, charge))),
+            likeliest(hypotheses.iter().filter_map(|h| self.decode(h))),
             self.expected,
         ) {
             (Some(decoded), Some(expected)) if decoded.payload != expected => {
@@ -99,11 +128,12 @@ impl Reader {
             ),
             (None, None) => (None, None),
         };
-        let best = |ln_p: &mut dyn Iterator<Item = f64>| union(ln_p.fold(0.0, f64::min), charge);
-        let pilots = best(&mut hypotheses.iter().map(|h| pilots(&h.symbols).ln_p()));
-        let ln_p_payload = candidate
-            .as_ref()
-            .map_or(0.0, |candidate| union(candidate.ln_p, charge));
+        let best = |ln_p: &dyn Fn(&Hypothesis) -> f64| {
+            let charged = hypotheses.iter().map(|h| union(ln_p(h), self.charge(h)));
+            charged.fold(0.0, f64::min)
+        };
+        let pilots = best(&|h| pilots(&h.symbols).ln_p());
+        let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| candidate.ln_p);
         // A payload is named where chance is excluded: among many candidates, a wrong one may pass its check bits.
         let named = candidate.as_ref().filter(|_| ln_p_payload <= LN_P_FOUND);
         let payload = named.map(|candidate| candidate.payload);
@@ -122,11 +152,9 @@ impl Reader {
                     .unwrap_or(0),
             },
             ln_p_payload,
-            ln_p_at_best: best(
-                &mut hypotheses
-                    .iter()
-                    .map(|h| against(&h.symbols, |_| 1.0).ln_p_at_best() + self.ln_guesses()),
-            ),
+            ln_p_at_best: best(&|h| {
+                against(&h.symbols, |_| 1.0).ln_p_at_best() + self.ln_guesses()
+            }),
             other,
         }
     }
@@ -140,16 +168,16 @@ impl Reader {
         }
     }
 
-    /// Logarithm of the number of tests: in each hypothesis the pilots alone and all symbols against a payload; where a
-    /// payload is expected, also the symbols that are no pilots against it.
-    fn charge(&self, num_hypotheses: usize) -> f64 {
-        let tests = if self.expected.is_some() { 3 } else { 2 };
-        libm::log((tests * num_hypotheses) as f64)
+    /// What a hypothesis is charged: its own share, and the number of tests that are made of it. These are the pilots alone and
+    /// all symbols against a payload; where a payload is expected, also the symbols that are no pilots against it.
+    fn charge(&self, hypothesis: &Hypothesis) -> f64 {
+        let tests = if self.expected.is_some() { 3.0 } else { 2.0 };
+        hypothesis.ln_num_tests + libm::log(tests)
     }
 
     /// The likeliest payload whose check bits hold, if it stands out from what noise would give.
-    fn decode(&self, hypothesis: &Hypothesis, charge: f64) -> Option<Candidate> {
-        let symbols = &hypothesis.symbols;
+    fn decode(&self, hypothesis: &Hypothesis) -> Option<Candidate> {
+        let (symbols, charge) = (&hypothesis.symbols, self.charge(hypothesis));
         let guess = f64::from(Payload::BITS) * LN_2;
         let statistic = |message| {
             let codeword = Codeword::new(message);
@@ -170,7 +198,7 @@ impl Reader {
         stands_out(&all).then(|| Candidate {
             payload,
             all,
-            ln_p: all.ln_p() + self.ln_guesses(),
+            ln_p: union(all.ln_p() + self.ln_guesses(), charge),
         })
     }
 
@@ -187,7 +215,7 @@ impl Reader {
         Candidate {
             payload,
             all: against(&hypothesis.symbols, sign),
-            ln_p,
+            ln_p: union(ln_p, self.charge(hypothesis)),
         }
     }
 }

@@ -3,13 +3,15 @@
 mod embed;
 mod error;
 mod extract;
+mod forecast;
 mod inspect;
 mod options;
 mod report;
 
 pub use embed::{Embedding, embed};
 pub use error::Error;
-pub use extract::{extract, measure, verify};
+pub use extract::{detect, extract, measure, verify};
+pub use forecast::{Forecast, Level};
 pub use inspect::{CarrierCapacity, Inspection, inspect};
 pub use options::{EmbedOptions, Strength};
 pub use report::{CarrierReading, EmbedReport, Extraction, Verdict};

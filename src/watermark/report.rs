@@ -1,5 +1,6 @@
 //! What people and programs are told. The fields' names in camel case are JavaScript's: see `src/wasm/types.d.ts`.
 
+use super::Forecast;
 use crate::carrier::Carrier;
 use serde::Serialize;
 
@@ -95,6 +96,8 @@ pub struct EmbedReport {
     pub strength: f64,
     /// The output, read again from its bytes.
     pub read_back: Extraction,
+    /// What the mark is likely to survive.
+    pub forecast: Vec<Forecast>,
     /// SHA-256 of the main file before.
     pub host_sha256: String,
     /// SHA-256 of the main file after.

@@ -21,7 +21,14 @@ const MAY_USE: [(&str, &[&str]); 19] = [
     (
         "carrier",
         &[
-            "mesh", "geometry", "key", "code", "order", "progress", "random",
+            "mesh",
+            "geometry",
+            "key",
+            "code",
+            "detection",
+            "order",
+            "progress",
+            "random",
         ],
     ),
     ("evidence", &["carrier", "mesh"]),
@@ -29,6 +36,7 @@ const MAY_USE: [(&str, &[&str]); 19] = [
     (
         "watermark",
         &[
+            "attack",
             "bits",
             "digest",
             "progress",

@@ -24,6 +24,7 @@ fn marked(mesh: &Mesh, owner: u8) -> Mesh {
         mesh,
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
+        on_top: false,
     };
     let mark = Mark {
         key: &key(owner),
@@ -42,7 +43,10 @@ fn marked(mesh: &Mesh, owner: u8) -> Mesh {
 /// The exponent of the hypothesis in which the message fits best.
 fn exponent(mesh: &Mesh, reader: u8) -> f64 {
     let codeword = Codeword::new(MESSAGE);
-    let hypotheses = Measurement::new(mesh).read(&key(reader)).hypotheses;
+    let hypotheses = Measurement::new(mesh)
+        .read(&key(reader), &mut ignore)
+        .unwrap()
+        .hypotheses;
     let fits = hypotheses.iter().map(|hypothesis| {
         let symbols = hypothesis.symbols.iter();
         -Statistic::new(symbols.map(|soft| (soft.value * codeword.sign(soft.symbol), soft.weight)))
@@ -139,6 +143,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         mesh: &sheet,
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
+        on_top: false,
     };
     let mark = Mark {
         key: &key(1),
@@ -152,4 +157,33 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         ["carrier.too-few-addresses", "carrier.too-weak"].contains(&code),
         "{code}"
     );
+}
+
+/// What nobody measured is refused: surfaces out of order or twice, which would be tests that are not charged, and cells so far
+/// apart that a lattice between them would not fit in memory.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_refuses_forged_measurements() {
+    let bytes = Measurement::new(&rock()).to_bytes();
+    assert!(Measurement::from_bytes(&bytes).is_some());
+    assert_eq!(
+        Measurement::from_bytes(&[bytes.as_slice(), &bytes].concat()),
+        None
+    );
+    let mut filtered = bytes.clone();
+    filtered[0] = 2;
+    assert_eq!(
+        Measurement::from_bytes(&filtered),
+        None,
+        "the suspect is missing"
+    );
+    let mut pitch = bytes.clone();
+    pitch[4..12].copy_from_slice(&0.17f64.to_le_bytes());
+    assert_eq!(Measurement::from_bytes(&pitch), None, "an unknown pitch");
+    // Origin and axes, pitch, units; then two clusters, the second in a cell far from the first.
+    let mut far = bytes[..20].to_vec();
+    far.extend(2u32.to_le_bytes());
+    let cluster = [0u8; 13];
+    far.extend([&[0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x02][..], &cluster].concat());
+    far.extend([&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x03][..], &cluster].concat());
+    assert_eq!(Measurement::from_bytes(&far), None, "cells out of reach");
 }

@@ -235,7 +235,8 @@ fn embed_stops_when_asked_at_any_stage() {
             Stage::Write,
             Stage::Read,
             Stage::Measure,
-            Stage::Test
+            Stage::Test,
+            Stage::Forecast
         ]
     );
     for stop in 0..stages.len() {

@@ -38,7 +38,9 @@ pub fn embed(
     let by_geometry = address::by_geometry(positions, &neighbourhoods, &features);
     let (kind, available) =
         address::choose(host.mesh, &by_connectivity, &by_geometry, &features.usable);
-    if available < NEEDED_ADDRESSES {
+    // Addresses by position survive nothing that SOLID does not.
+    let adds_nothing = host.on_top && matches!(kind, AddressKind::Position(_));
+    if available < NEEDED_ADDRESSES || adds_nothing {
         return Err(CarrierError::TooFewAddresses {
             carrier: Carrier::Ring,
             needed: NEEDED_ADDRESSES,

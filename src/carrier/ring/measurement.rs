@@ -103,10 +103,10 @@ impl Measurement {
         let ownership = Ownership::of(key);
         let read = |sums: &Vec<Sum>| Hypothesis {
             symbols: sums.iter().filter_map(|sum| sum.read(&ownership)).collect(),
+            ln_num_tests: libm::log(self.sums.len() as f64),
         };
         let hypotheses: Vec<Hypothesis> = self.sums.iter().map(read).collect();
         Reading {
-            num_declared: hypotheses.len(),
             hypotheses,
             num_addresses: self.sums.iter().map(Vec::len).max().unwrap_or(0),
         }

@@ -1,23 +1,30 @@
 //! The statistic: the windowed flux of the oriented surface at the points of a lattice, a band-passed occupancy field.
 //!
-//! It is an integral over the surface, so tessellation drops out. With q = |y - L| / R < 1 about a lattice point L,
-//! `F = integral of (1 - q^2)^2 (y - L) . dA`; a displacement d of the surface changes it by `integral of g d . dA` with
-//! `g = (1 - q^2)(3 - 7 q^2)`. The surface is first gathered in small cells, each kept as a centroid, an area vector and the
-//! first moment `m = sum (y - centroid) . a`: one evaluation then costs a few operations for each cell and window.
+//! It is an integral over the surface, so tessellation drops out. In units of the lattice's pitch, with q = |y - L| / R < 1
+//! about a lattice point L, `F = integral of (1 - q^2)^2 (y - L) . dA`; a displacement d of the surface changes it by
+//! `integral of g d . dA` with `g = (1 - q^2)(3 - 7 q^2)`. The surface is first gathered in small cells, each kept as a
+//! centroid, an area vector and the first moment `m = sum (y - centroid) . a`: one evaluation then costs a few operations
+//! for each cell and window.
 
-use super::{PITCH, RADIUS};
-use crate::geometry::{Pose, samples};
+use crate::geometry::{Pose, Quadrature};
 use crate::mesh::Mesh;
 use crate::order::order_by;
 use glam::{DMat3, DVec3};
 
+/// Radius of a window, in pitches.
+pub const RADIUS: f64 = 1.2;
+
+/// Triangles are split until their edges are no longer than this, in pitches.
+pub const EDGE: f64 = 1.0 / 3.0;
+
 /// Cells are so many times smaller than the lattice's pitch.
-const CELLS_PER_PITCH: f64 = 5.0;
+pub const CELLS_PER_PITCH: f64 = 4.0;
+
 /// What lies further from the centre, in units of the frame, is left out: it has no neighbours to make windows with.
-const EXTENT: f64 = 8.0;
+pub const EXTENT: f64 = 4.0;
 
 /// A small piece of surface, in the canonical frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cluster {
     /// Area-weighted centroid.
     pub centre: DVec3,
@@ -29,77 +36,121 @@ pub struct Cluster {
     pub weight: f64,
 }
 
-/// Gathers a surface in clusters, in the frame of a pose. The triangles have to face outwards.
-pub fn clusters(mesh: &Mesh, pose: &Pose) -> Vec<Cluster> {
-    let cell = PITCH / CELLS_PER_PITCH;
-    let number = |coordinate: f64| ((coordinate + EXTENT) / cell) as u64;
-    let pieces: Vec<(DVec3, DVec3)> = samples(mesh, PITCH * pose.size / 3.0)
-        .into_iter()
-        .map(|sample| {
-            (
-                pose.canonical(sample.point),
-                pose.axes.transpose() * sample.area / (pose.size * pose.size),
-            )
-        })
-        .filter(|(y, _)| y.abs().max_element() < EXTENT)
-        .collect();
-    let order = order_by(
-        pieces
-            .iter()
-            .map(|(y, _)| number(y.x) << 40 | number(y.y) << 20 | number(y.z)),
-    );
-    order
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|cell| cluster(cell.iter().map(|&(_, piece)| pieces[piece as usize])))
-        .collect()
+/// Gathers a surface in clusters fine enough for a pitch, in the frame of a pose, in increasing order of their cells. The
+/// triangles have to face outwards.
+pub fn clusters(mesh: &Mesh, pose: &Pose, pitch: f64) -> Vec<Cluster> {
+    let cell = pitch / CELLS_PER_PITCH;
+    let quadrature = Quadrature::new(EDGE * pitch * pose.size);
+    let to_frame = pose.axes.transpose() * (1.0 / (pose.size * pose.size));
+    let mut cells = Cells::default();
+    for &triangle in &mesh.triangles {
+        for sample in quadrature.samples(mesh.corners(triangle)) {
+            let y = pose.canonical(sample.point);
+            if y.abs().max_element() >= EXTENT {
+                continue;
+            }
+            let corner = (y / cell).floor();
+            let area = to_frame * sample.area;
+            let weight = area.length();
+            let offset = y - corner * cell;
+            let sum = cells.at(number(corner));
+            sum.centre += offset * weight;
+            sum.area += area;
+            sum.moment += offset.dot(area);
+            sum.weight += weight;
+        }
+    }
+    let order = order_by(cells.found.iter().map(|(number, _)| *number));
+    let clusters = order.iter().map(|&(number, index)| {
+        let sum = cells.found[index as usize].1;
+        let centre = sum.centre / sum.weight;
+        Cluster {
+            centre: corner(number) * cell + centre,
+            moment: sum.moment - centre.dot(sum.area),
+            ..sum
+        }
+    });
+    clusters.filter(|cluster| cluster.weight > 0.0).collect()
 }
 
-fn cluster(pieces: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Cluster {
-    let (mut weight, mut first, mut area, mut count, mut mean) =
-        (0.0, DVec3::ZERO, DVec3::ZERO, 0.0, DVec3::ZERO);
-    for (y, a) in pieces.clone() {
-        let size = a.length();
-        weight += size;
-        first += y * size;
-        area += a;
-        mean += y;
-        count += 1.0;
+/// Cells are counted from here, so that their coordinates are not negative.
+const ORIGIN: i64 = 1 << 19;
+
+/// The number of a cell, by its integer coordinates.
+pub fn number(corner: DVec3) -> u64 {
+    let part = |coordinate: f64| (coordinate as i64 + ORIGIN) as u64;
+    part(corner.x) << 40 | part(corner.y) << 20 | part(corner.z)
+}
+
+/// The integer coordinates of a cell.
+pub fn corner(number: u64) -> DVec3 {
+    let part = |shift: u32| ((number >> shift & 0xf_ffff) as i64 - ORIGIN) as f64;
+    DVec3::new(part(40), part(20), part(0))
+}
+
+/// Sums by cell: an open hash table that keeps the order in which cells were met.
+#[derive(Default)]
+struct Cells {
+    found: Vec<(u64, Cluster)>,
+    /// Index in `found` plus 1; 0 is free. A power of two, at most half full.
+    slots: Vec<u32>,
+}
+
+impl Cells {
+    fn at(&mut self, number: u64) -> &mut Cluster {
+        if 2 * self.found.len() >= self.slots.len() {
+            self.slots = vec![0; (4 * self.found.len()).next_power_of_two().max(1024)];
+            for index in 0..self.found.len() {
+                let slot = self.slot(self.found[index].0);
+                self.slots[slot] = index as u32 + 1;
+            }
+        }
+        let slot = self.slot(number);
+        if self.slots[slot] == 0 {
+            self.found.push((number, Cluster::default()));
+            self.slots[slot] = self.found.len() as u32;
+        }
+        &mut self.found[self.slots[slot] as usize - 1].1
     }
-    let centre = if weight > 0.0 {
-        first / weight
-    } else {
-        mean / count
-    };
-    let moment = pieces.map(|(y, a)| (y - centre).dot(a)).sum();
-    Cluster {
-        centre,
-        area,
-        moment,
-        weight,
+
+    /// Where a number is, or would be (Fibonacci hashing, linear probing).
+    fn slot(&self, number: u64) -> usize {
+        let mask = self.slots.len() - 1;
+        let mut slot = (number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize & mask;
+        while self.slots[slot] != 0 && self.found[self.slots[slot] as usize - 1].0 != number {
+            slot = (slot + 1) & mask;
+        }
+        slot
     }
 }
 
-/// Where a lattice lies in the canonical frame: a point y has lattice coordinates `rotation^T (y - origin) / scale`.
+/// Where a lattice lies in the canonical frame: a point y has lattice coordinates `rotation^T (y - origin) / pitch`, in
+/// which lattice points are whole numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     pub rotation: DMat3,
     pub origin: DVec3,
-    pub scale: f64,
+    pub pitch: f64,
 }
 
 impl Placement {
-    /// This placement moved by a small similarity: translation and rotation vector in lattice coordinates, log of the scale.
+    /// This placement moved by a small similarity: translation and rotation vector in the frame, log of the scale.
     pub fn nudged(&self, x: &[f64; 7]) -> Placement {
         Placement {
             rotation: self.rotation * rotation(DVec3::new(x[3], x[4], x[5])),
-            origin: self.origin + self.rotation * DVec3::new(x[0], x[1], x[2]) * self.scale,
-            scale: self.scale * libm::exp(x[6]),
+            origin: self.origin + self.rotation * DVec3::new(x[0], x[1], x[2]),
+            pitch: self.pitch * libm::exp(x[6]),
         }
     }
 
     /// The lattice coordinates of a point.
     pub fn lattice(&self, y: DVec3) -> DVec3 {
-        self.rotation.transpose() * (y - self.origin) / self.scale
+        self.rotation.transpose() * (y - self.origin) / self.pitch
+    }
+
+    /// The point at lattice coordinates.
+    pub fn point(&self, lattice: DVec3) -> DVec3 {
+        self.rotation * lattice * self.pitch + self.origin
     }
 }
 
@@ -121,28 +172,41 @@ fn rotation(vector: DVec3) -> DMat3 {
 /// The flux at one lattice point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Index of the lattice point: the point is `PITCH * index`.
+    /// The lattice point.
     pub index: [i32; 3],
     pub flux: f64,
-    /// How much surface the window sees: 0 for too little to be used.
+    /// How much surface the window sees.
     pub weight: f64,
+    /// What the key adds to the phase, in steps of the quantizer: 0 until a key is there.
+    pub dither: f64,
 }
 
-/// The lattice points that a position's windows belong to, with the offset from each and the squared relative distance.
-pub fn windows_at(y: DVec3) -> impl Iterator<Item = ([i32; 3], DVec3, f64)> {
-    let base = (y / PITCH)
-        .floor()
-        .to_array()
-        .map(|coordinate| coordinate as i32);
-    let steps = || -1..=2;
-    let indices =
-        steps().flat_map(move |i| steps().flat_map(move |j| steps().map(move |k| [i, j, k])));
-    indices.filter_map(move |[i, j, k]| {
-        let index = [base[0] + i, base[1] + j, base[2] + k];
-        let offset = y - DVec3::new(index[0].into(), index[1].into(), index[2].into()) * PITCH;
-        let q2 = offset.length_squared() / (RADIUS * RADIUS);
-        (q2 < 1.0).then_some((index, offset, q2))
-    })
+/// Calls `visit` with every lattice point within a radius of a position, the offset from it and the squared distance relative
+/// to the radius.
+pub fn for_each_near(y: DVec3, radius: f64, mut visit: impl FnMut([i32; 3], DVec3, f64)) {
+    let first = (y - radius).ceil();
+    let last = (y + radius).floor();
+    let mut point = first;
+    while point.x <= last.x {
+        let x = y.x - point.x;
+        point.y = first.y;
+        while point.y <= last.y {
+            let dy = y.y - point.y;
+            let plane = x * x + dy * dy;
+            point.z = first.z;
+            while plane < radius * radius && point.z <= last.z {
+                let z = y.z - point.z;
+                let q2 = (plane + z * z) / (radius * radius);
+                if q2 < 1.0 {
+                    let index = [point.x as i32, point.y as i32, point.z as i32];
+                    visit(index, DVec3::new(x, dy, z), q2);
+                }
+                point.z += 1.0;
+            }
+            point.y += 1.0;
+        }
+        point.x += 1.0;
+    }
 }
 
 /// Sensitivity of a window to a displacement of the surface within it.
@@ -150,62 +214,105 @@ pub fn sensitivity(q2: f64) -> f64 {
     (1.0 - q2) * (3.0 - 7.0 * q2)
 }
 
-/// Windows that see less than this, in units of the pitch, are not used; from there on the weight grows.
+/// Windows that see less than this are not used; from there on the weight grows.
 const LEAST_ENERGY: f64 = 0.5;
+
+/// The weight of a window, from the integral of `g^2` over the surface that it sees; not positive for too little.
+pub fn weight(energy: f64) -> f64 {
+    energy.sqrt() - LEAST_ENERGY
+}
+
+/// A box of lattice points with a value for each.
+#[derive(Clone)]
+pub struct Grid<T> {
+    pub low: [i32; 3],
+    pub size: [usize; 3],
+    pub values: Vec<T>,
+}
+
+impl<T: Clone> Grid<T> {
+    /// A box that holds the windows of all positions.
+    pub fn about(positions: impl Iterator<Item = DVec3>, margin: f64, value: T) -> Grid<T> {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for y in positions {
+            low = low.min(y);
+            high = high.max(y);
+        }
+        if !(low.is_finite() && high.is_finite()) {
+            (low, high) = (DVec3::ZERO, DVec3::ZERO);
+        }
+        let low = (low - margin).floor();
+        let size = ((high + margin).ceil() - low)
+            .to_array()
+            .map(|extent| extent as usize + 1);
+        Grid {
+            low: low.to_array().map(|coordinate| coordinate as i32),
+            size,
+            values: vec![value; size[0] * size[1] * size[2]],
+        }
+    }
+
+    /// Where the value of a lattice point is, if it is in the box.
+    pub fn find(&self, index: [i32; 3]) -> Option<usize> {
+        let inside = |axis: usize| {
+            let offset = index[axis] - self.low[axis];
+            offset >= 0 && (offset as usize) < self.size[axis]
+        };
+        (0..3).all(inside).then(|| self.place(index))
+    }
+
+    /// Where the value of a lattice point is that is known to be in the box.
+    pub fn place(&self, index: [i32; 3]) -> usize {
+        let [i, j, k] = [0, 1, 2].map(|axis| (index[axis] - self.low[axis]) as usize);
+        (i * self.size[1] + j) * self.size[2] + k
+    }
+
+    /// The lattice point of a place.
+    pub fn index(&self, place: usize) -> [i32; 3] {
+        let [_, y, z] = self.size;
+        let part = |axis: usize, offset: usize| self.low[axis] + offset as i32;
+        [
+            part(0, place / (y * z)),
+            part(1, place / z % y),
+            part(2, place % z),
+        ]
+    }
+}
 
 /// The windows that see enough of the surface, in increasing order of index.
 pub fn windows(clusters: &[Cluster], placement: &Placement) -> Vec<Window> {
-    let bound = (1.8 * EXTENT / PITCH) as i32 + 4;
-    let turned: Vec<(DVec3, DVec3, f64, f64)> = clusters
+    let back = placement.rotation.transpose();
+    let per_area = 1.0 / (placement.pitch * placement.pitch);
+    let positions = clusters
         .iter()
-        .map(|cluster| {
-            let area_scale = 1.0 / (placement.scale * placement.scale);
-            (
-                placement.lattice(cluster.centre),
-                placement.rotation.transpose() * cluster.area * area_scale,
-                cluster.moment * area_scale / placement.scale,
-                cluster.weight * area_scale,
-            )
-        })
-        .collect();
-    let inside = |y: DVec3| y.abs().max_element() < f64::from(bound - 3) * PITCH;
-    let mut low = [bound; 3];
-    let mut high = [-bound; 3];
-    for (y, ..) in turned.iter().filter(|(y, ..)| inside(*y)) {
-        let base = (*y / PITCH).floor().to_array();
-        for axis in 0..3 {
-            low[axis] = low[axis].min(base[axis] as i32 - 1);
-            high[axis] = high[axis].max(base[axis] as i32 + 2);
-        }
-    }
-    let size = [0, 1, 2].map(|axis| (high[axis] - low[axis] + 1).max(0) as usize);
-    let mut field = vec![(0.0, 0.0); size[0] * size[1] * size[2]];
-    for &(y, area, moment, weight) in turned.iter().filter(|(y, ..)| inside(*y)) {
-        for (index, offset, q2) in windows_at(y) {
-            let [i, j, k] = [0, 1, 2].map(|axis| (index[axis] - low[axis]) as usize);
-            let (flux, energy) = &mut field[(i * size[1] + j) * size[2] + k];
-            let window = (1.0 - q2) * (1.0 - q2);
+        .map(|cluster| placement.lattice(cluster.centre));
+    let mut sums = Grid::about(positions, RADIUS, (0.0, 0.0));
+    for cluster in clusters {
+        let y = placement.lattice(cluster.centre);
+        let area = back * cluster.area * per_area;
+        let moment = cluster.moment * per_area / placement.pitch;
+        let weight = cluster.weight * per_area;
+        for_each_near(y, RADIUS, |index, offset, q2| {
+            let place = sums.place(index);
+            let (flux, energy) = &mut sums.values[place];
             let g = sensitivity(q2);
-            *flux += window * (offset.dot(area) + moment);
+            *flux += (1.0 - q2) * (1.0 - q2) * (offset.dot(area) + moment);
             *energy += weight * g * g;
-        }
+        });
     }
-    let mut windows = Vec::new();
-    for (cell, &(flux, energy)) in field.iter().enumerate() {
-        let weight = energy.sqrt() / PITCH - LEAST_ENERGY;
-        if weight > 0.0 {
-            let [i, j, k] = [
-                cell / (size[1] * size[2]),
-                cell / size[2] % size[1],
-                cell % size[2],
-            ];
-            let index = [low[0] + i as i32, low[1] + j as i32, low[2] + k as i32];
-            windows.push(Window {
+    let seen = sums
+        .values
+        .iter()
+        .enumerate()
+        .filter_map(|(place, &(flux, energy))| {
+            let weight = weight(energy);
+            let index = sums.index(place);
+            (weight > 0.0).then_some(Window {
                 index,
                 flux,
                 weight,
-            });
-        }
-    }
-    windows
+                dither: 0.0,
+            })
+        });
+    seen.collect()
 }

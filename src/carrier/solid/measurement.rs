@@ -1,294 +1,275 @@
-//! What SOLID measures of a suspect without a key, and how a key reads it.
+//! What SOLID measures of a suspect without a key: its surface in small pieces, in its own frame, as it is and as it may
+//! have been before it was smoothed.
 
-use super::flux::{Cluster, Placement, Window, clusters, windows};
-use super::refine::refine;
-use super::{Lattice, PITCH, STEPS, oriented, pose_of};
-use crate::carrier::{Hypothesis, Reading};
-use crate::code::{SoftSymbol, Symbol};
+use super::flux::clusters;
+use super::store::{Store, take};
+use super::strength::FAMILIES;
+use super::{AREAS, boundary, oriented, pitches, pose_of, search};
+use crate::carrier::Reading;
 use crate::geometry::spectral::{self, InverseFilter};
+use crate::geometry::{Pose, refined};
 use crate::key::Key;
 use crate::mesh::{Edges, Mesh};
-use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
+use crate::progress::{Cancelled, Progress};
+use glam::DVec3;
+use std::borrow::Cow;
+use std::collections::VecDeque;
 
-/// Axes whose spreads are nearer than this ratio may have changed places.
-const NEAR: f64 = 0.85;
+/// How well two successive axes of a frame are told apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axes {
+    /// By their spreads.
+    Distinct,
+    /// Hardly: an attack may have changed their places.
+    Exchangeable,
+    /// Not at all: they may lie anywhere in their plane.
+    Undetermined,
+}
 
-/// Where pilots agree less than this, in nats, there is nothing to decode.
-const WORTH_DECODING: f64 = 3.0;
-
-/// Pilots that agree better than this end the search: what follows would only undo attacks that did not happen.
-const ENOUGH: f64 = 25.0;
+/// The first and the second axis; the second and the third.
+pub fn axes_of(pose: &Pose) -> [Axes; 2] {
+    let apart = |larger: f64, smaller: f64| match smaller / larger {
+        ratio if ratio > 0.9 => Axes::Undetermined,
+        ratio if ratio > 0.85 => Axes::Exchangeable,
+        _ => Axes::Distinct,
+    };
+    let [x, y, z] = pose.spreads.to_array();
+    [apart(x, y), apart(y, z)]
+}
 
 /// A filtered surface that is so many times larger has spikes, and is left out.
 const SPIKY: f64 = 1.6;
 
-/// What may have been done to the surface, likeliest first: nothing; then smoothing, to be undone. Steps grow by about a
-/// quarter, since a filter for 12 steps serves for 10 and for 15.
-fn filters() -> Vec<InverseFilter> {
-    let laplacian = [
-        (4.0, 30.0),
-        (6.0, 30.0),
-        (9.0, 100.0),
-        (13.0, 100.0),
-        (19.0, 100.0),
-        (28.0, 300.0),
-        (28.0, 30.0),
-    ];
-    let laplacian =
-        laplacian
-            .into_iter()
-            .chain([(40.0, 1000.0), (40.0, 30.0), (57.0, 1000.0), (57.0, 100.0)]);
-    let taubin = [(9.0, 100.0), (13.0, 100.0), (19.0, 100.0), (27.0, 100.0)];
-    let laplacian = laplacian.map(|(steps, gain)| InverseFilter {
-        steps,
-        step: spectral::laplacian,
-        gain,
-    });
-    laplacian
-        .chain(taubin.map(|(steps, gain)| InverseFilter {
-            steps,
-            step: spectral::taubin,
-            gain,
-        }))
-        .collect()
+/// Meshes with fewer triangles than this may be simplified ones, whose chords cut off a noticeable part of the shape.
+const COARSE: usize = 15_000;
+
+/// What a suspect is measured in.
+const STAGES: usize = 4;
+
+/// How a surface came from the suspect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// It is the suspect.
+    Suspect,
+    /// Chords were replaced by arcs.
+    Refined,
+    /// A smoothing was undone: a node of [`FAMILIES`].
+    Filtered { family: u8, node: u8 },
 }
 
-/// Key-free measurement of a mesh: its surface in small pieces, in its own frame, as it is and as it may have been.
+/// A surface of a suspect, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    pub(super) origin: Origin,
+    /// The first and the second axis; the second and the third.
+    pub(super) axes: [Axes; 2],
+    pub(super) store: Store,
+}
+
+impl Surface {
+    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, and its store.
+    fn read(bytes: &mut &[u8]) -> Option<Surface> {
+        let origin = match take(bytes)? {
+            [0, 0] => Origin::Suspect,
+            [1, 0] => Origin::Refined,
+            [family, node] => {
+                let family = family.checked_sub(2)?;
+                let nodes = FAMILIES.get(usize::from(family))?.len();
+                (usize::from(node) < nodes).then_some(Origin::Filtered { family, node })?
+            }
+        };
+        let [first, second] = take(bytes)?;
+        let axes = |byte: u8| {
+            [Axes::Distinct, Axes::Exchangeable, Axes::Undetermined]
+                .get(usize::from(byte))
+                .copied()
+        };
+        Some(Surface {
+            origin,
+            axes: [axes(first)?, axes(second)?],
+            store: Store::read(bytes)?,
+        })
+    }
+
+    /// Appends the bytes.
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(match self.origin {
+            Origin::Suspect => [0, 0],
+            Origin::Refined => [1, 0],
+            Origin::Filtered { family, node } => [family + 2, node],
+        });
+        bytes.extend(self.axes.map(|axes| axes as u8));
+        self.store.write(bytes);
+    }
+}
+
+/// The surfaces of a suspect, measured as they are asked for: a marked one is mostly found in the first.
+pub struct Surfaces {
+    mesh: Mesh,
+    boundary: Vec<(u32, u32)>,
+    pose: Option<Pose>,
+    /// The frame whose axes are followed, where it is known.
+    facing: Option<Pose>,
+    pitch: f64,
+    area: f64,
+    /// What is measured next: the suspect, the refined one, the first family, the others.
+    next: usize,
+    ready: VecDeque<Surface>,
+}
+
+impl Surfaces {
+    /// Prepares a mesh.
+    pub fn new(mesh: &Mesh) -> Surfaces {
+        let mesh = oriented(mesh);
+        let boundary = boundary(&mesh);
+        let pose = pose_of(&mesh, &boundary);
+        let area = mesh.area();
+        let in_frame = pose.map_or(0.0, |pose| area / (pose.size * pose.size));
+        let finest = pitches(in_frame, AREAS).reduce(f64::min);
+        Surfaces {
+            boundary,
+            mesh,
+            pose: pose.filter(|_| finest.is_some()),
+            facing: None,
+            pitch: finest.unwrap_or(0.0),
+            area,
+            next: 0,
+            ready: VecDeque::new(),
+        }
+    }
+
+    /// The same, for a mesh that nobody has turned since it was marked: its axes are known to be those of the unmarked one.
+    pub fn facing(self, unmarked: &Surfaces) -> Surfaces {
+        Surfaces {
+            facing: unmarked.pose,
+            ..self
+        }
+    }
+
+    /// The surface as the filters of some families leave it.
+    fn filtered(&self, families: std::ops::Range<usize>) -> Vec<(Origin, Cow<'_, Mesh>)> {
+        let nodes = families.flat_map(|family| {
+            (0..FAMILIES[family].len()).map(move |node| (family as u8, node as u8))
+        });
+        let nodes: Vec<(u8, u8)> = nodes.collect();
+        let filter = |&(family, node): &(u8, u8)| FAMILIES[usize::from(family)].filter(node.into());
+        let filters: Vec<InverseFilter> = nodes.iter().map(filter).collect();
+        let rings = Edges::new(&self.mesh).rings(self.mesh.positions.len());
+        let filtered = spectral::filtered(&self.mesh.positions, &rings, &filters);
+        let surface = |((family, node), positions): ((u8, u8), Vec<DVec3>)| {
+            let mesh = self.mesh.with_positions(positions);
+            (Origin::Filtered { family, node }, Cow::Owned(mesh))
+        };
+        nodes.into_iter().zip(filtered).map(surface).collect()
+    }
+
+    /// Measures what comes next: one surface or, for smoothing shares most of the work, all of some families.
+    fn measure(&self, stage: usize, pose: &Pose) -> VecDeque<Surface> {
+        let found: Vec<(Origin, Cow<Mesh>)> = match stage {
+            0 => vec![(Origin::Suspect, Cow::Borrowed(&self.mesh))],
+            1 if self.mesh.triangles.len() < COARSE => {
+                vec![(Origin::Refined, Cow::Owned(refined(&self.mesh)))]
+            }
+            1 => Vec::new(),
+            2 => self.filtered(0..1),
+            _ => self.filtered(1..FAMILIES.len()),
+        };
+        let largest = SPIKY * self.area;
+        let in_own_frame = |(origin, mesh): (Origin, Cow<Mesh>)| {
+            let boundary = match origin {
+                Origin::Refined => Cow::Owned(boundary(&mesh)),
+                _ => Cow::Borrowed(&self.boundary),
+            };
+            let own = pose_of(&mesh, &boundary).filter(|_| mesh.area() <= largest)?;
+            let own = own.aligned_with(self.facing.as_ref().unwrap_or(pose));
+            Some(Surface {
+                origin,
+                axes: match self.facing {
+                    Some(_) => [Axes::Distinct; 2],
+                    None => axes_of(&own),
+                },
+                store: Store::new(&clusters(&mesh, &own, self.pitch), self.pitch),
+            })
+        };
+        found.into_iter().filter_map(in_own_frame).collect()
+    }
+}
+
+impl Iterator for Surfaces {
+    type Item = Surface;
+
+    fn next(&mut self) -> Option<Surface> {
+        let pose = self.pose?;
+        while self.ready.is_empty() && self.next < STAGES {
+            self.ready = self.measure(self.next, &pose);
+            self.next += 1;
+        }
+        self.ready.pop_front()
+    }
+}
+
+/// Key-free measurement of a mesh: all its surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     surfaces: Vec<Surface>,
 }
 
-/// One surface in its own frame.
-#[derive(Clone, Debug, PartialEq)]
-struct Surface {
-    /// Whether the frame's axes may have changed places, so that 24 turns are to be tried and not 4.
-    ambiguous: bool,
-    clusters: Vec<Cluster>,
-}
-
 impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {
-        let mesh = oriented(mesh);
-        let rings = Edges::new(&mesh).rings(mesh.positions.len());
-        let filtered = spectral::filtered(&mesh.positions, &rings, &filters());
-        let largest = SPIKY * area(&mesh);
-        let candidates = filtered
-            .into_iter()
-            .map(|positions| mesh.with_positions(positions));
-        let candidates = candidates.filter(|candidate| area(candidate) <= largest);
-        let surfaces = Surface::of(&mesh)
-            .into_iter()
-            .chain(candidates.filter_map(|candidate| Surface::of(&candidate)));
-        Measurement {
-            surfaces: surfaces.collect(),
-        }
+        Surfaces::new(mesh).collect()
     }
 
-    /// The soft symbols of a key: in the frame of each surface as it was found, all symbols, for each turn of the frame and
-    /// each step; and once, at the placement where the pilots agree best, the symbols that are no pilots.
-    pub fn read(&self, key: &Key) -> Reading {
-        let lattice = Lattice::of(key);
-        let mut hypotheses = Vec::new();
-        let mut best: Option<(f64, &Surface, Placement, f64)> = None;
-        let mut num_addresses = 0;
-        for surface in &self.surfaces {
-            for turn in turns(surface.ambiguous) {
-                let placement = lattice.placed(turn);
-                let windows = windows(&surface.clusters, &placement);
-                num_addresses = num_addresses.max(windows.len());
-                let held: Vec<(f64, Symbol)> = windows
-                    .iter()
-                    .map(|window| lattice.at(window.index))
-                    .collect();
-                for step in STEPS {
-                    let step_size = step * PITCH * PITCH;
-                    let symbols = soft(&windows, &held, step_size);
-                    let evidence = pilot_evidence(&symbols);
-                    if best.is_none_or(|(most, ..)| evidence > most) {
-                        best = Some((evidence, surface, placement, step_size));
-                    }
-                    if evidence >= WORTH_DECODING || hypotheses.is_empty() {
-                        hypotheses.push(Hypothesis { symbols });
-                    }
-                }
-            }
-            if best.is_some_and(|(evidence, ..)| evidence >= ENOUGH) {
-                break;
-            }
-        }
-        if let Some((_, surface, placement, step_size)) = best {
-            let found = refine(&surface.clusters, &placement, &lattice, step_size);
-            let windows = windows(&surface.clusters, &found);
-            let held: Vec<(f64, Symbol)> = windows
-                .iter()
-                .map(|window| lattice.at(window.index))
-                .collect();
-            let mut symbols = soft(&windows, &held, step_size);
-            symbols.retain(|soft| soft.symbol != Symbol::Pilot);
-            hypotheses.push(Hypothesis { symbols });
-        }
-        let num_turns: usize = self
-            .surfaces
-            .iter()
-            .map(|surface| turns(surface.ambiguous).len())
-            .sum();
-        Reading {
-            num_declared: num_turns * STEPS.len() + 1,
-            hypotheses,
-            num_addresses,
-        }
+    /// The soft symbols of a key.
+    pub fn read(&self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
+        search::read(&mut self.surfaces.iter().map(Cow::Borrowed), key, progress)
     }
 
-    /// The measurement as bytes: for each surface 1, the number of its clusters in 4, and 32 for each of them.
+    /// The measurement as bytes: its surfaces one after the other.
     pub fn to_bytes(&self) -> Vec<u8> {
-        self.surfaces.iter().flat_map(Surface::to_bytes).collect()
+        let mut bytes = Vec::new();
+        self.surfaces
+            .iter()
+            .for_each(|surface| surface.write(&mut bytes));
+        bytes
     }
 
     /// A measurement from its bytes; `None` if they are not such.
     pub fn from_bytes(mut bytes: &[u8]) -> Option<Measurement> {
         let mut surfaces = Vec::new();
         while !bytes.is_empty() {
-            let (surface, rest) = Surface::from_bytes(bytes)?;
-            surfaces.push(surface);
-            bytes = rest;
+            surfaces.push(Surface::read(&mut bytes)?);
         }
-        Some(Measurement { surfaces })
-    }
-}
-
-impl Surface {
-    /// Bytes in a stored cluster.
-    const CLUSTER_BYTES: usize = 32;
-
-    /// The surface of an oriented mesh; `None` without area.
-    fn of(mesh: &Mesh) -> Option<Surface> {
-        let pose = pose_of(mesh)?;
-        let ambiguous =
-            pose.spreads.y > NEAR * pose.spreads.x || pose.spreads.z > NEAR * pose.spreads.y;
-        let clusters = clusters(mesh, &pose)
-            .into_iter()
-            .map(|cluster| decode(encode(&cluster)))
-            .collect();
-        Some(Surface {
-            ambiguous,
-            clusters,
-        })
-    }
-
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = vec![u8::from(self.ambiguous)];
-        bytes.extend((self.clusters.len() as u32).to_le_bytes());
-        bytes.extend(
-            self.clusters
-                .iter()
-                .flat_map(|cluster| encode(cluster).into_iter().flat_map(f32::to_le_bytes)),
-        );
-        bytes
-    }
-
-    /// The surface that bytes begin with, and what follows it.
-    fn from_bytes(bytes: &[u8]) -> Option<(Surface, &[u8])> {
-        let (&ambiguous, bytes) = bytes.split_first()?;
-        let (count, bytes) = bytes.split_first_chunk()?;
-        let length = (u32::from_le_bytes(*count) as usize).checked_mul(Self::CLUSTER_BYTES)?;
-        let (clusters, rest) = bytes.split_at_checked(length)?;
-        let (clusters, _) = clusters.as_chunks::<{ Self::CLUSTER_BYTES }>();
-        let cluster = |bytes: &[u8; Self::CLUSTER_BYTES]| {
-            let (numbers, _) = bytes.as_chunks::<4>();
-            let mut values = [0.0; 8];
-            values
-                .iter_mut()
-                .zip(numbers)
-                .for_each(|(value, bytes)| *value = f32::from_le_bytes(*bytes));
-            values
-                .iter()
-                .all(|value| value.is_finite())
-                .then(|| decode(values))
+        // Each surface is charged once, and all are read at the suspect's pitches: forged evidence may not say otherwise.
+        let is_first = |surface: &Surface| surface.origin == Origin::Suspect;
+        let in_order = |pair: &[Surface]| {
+            pair[0].origin < pair[1].origin && pair[0].store.pitch == pair[1].store.pitch
         };
-        let clusters: Option<Vec<Cluster>> = clusters.iter().map(cluster).collect();
-        (ambiguous <= 1).then_some((
-            Surface {
-                ambiguous: ambiguous == 1,
-                clusters: clusters?,
-            },
-            rest,
-        ))
+        let is_sound = surfaces.first().is_none_or(is_first) && surfaces.windows(2).all(in_order);
+        is_sound.then_some(Measurement { surfaces })
     }
 }
 
-fn area(mesh: &Mesh) -> f64 {
-    let double = |&triangle: &[u32; 3]| {
-        let [a, b, c] = mesh.corners(triangle);
-        (b - a).cross(c - a).length()
-    };
-    mesh.triangles.iter().map(double).sum::<f64>() * 0.5
-}
-
-fn encode(cluster: &Cluster) -> [f32; 8] {
-    let (c, a) = (cluster.centre.as_vec3(), cluster.area.as_vec3());
-    [
-        c.x,
-        c.y,
-        c.z,
-        a.x,
-        a.y,
-        a.z,
-        cluster.moment as f32,
-        cluster.weight as f32,
-    ]
-}
-
-fn decode(v: [f32; 8]) -> Cluster {
-    let v = v.map(f64::from);
-    Cluster {
-        centre: DVec3::new(v[0], v[1], v[2]),
-        area: DVec3::new(v[3], v[4], v[5]),
-        moment: v[6],
-        weight: v[7],
-    }
-}
-
-/// How well the pilots agree, in nats: the exponent of their bound.
-fn pilot_evidence(symbols: &[SoftSymbol]) -> f64 {
-    let pilots = symbols.iter().filter(|soft| soft.symbol == Symbol::Pilot);
-    let (sum, energy) = pilots.fold((0.0f64, 0.0f64), |(sum, energy), soft| {
-        (sum + soft.value, energy + soft.weight * soft.weight)
-    });
-    if energy > 0.0 {
-        sum.max(0.0) * sum.max(0.0) / energy
-    } else {
-        0.0
-    }
-}
-
-/// The symbols of the windows, whose dithers and symbols are `held`, as a quantizer of a step sees them.
-fn soft(windows: &[Window], held: &[(f64, Symbol)], step_size: f64) -> Vec<SoftSymbol> {
-    let read = |(window, &(dither, symbol)): (&Window, &(f64, Symbol))| {
-        let value = window.weight * libm::cos(TAU * (window.flux / step_size + dither));
-        SoftSymbol {
-            symbol,
-            value,
-            weight: window.weight,
-        }
-    };
-    windows.iter().zip(held).map(read).collect()
-}
-
-/// The rotations that take a frame into itself: 4 if its axes are known but for their signs, else 24.
-fn turns(ambiguous: bool) -> Vec<DMat3> {
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    let mut turns = Vec::new();
-    for (first, second) in [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)] {
-        for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-            let (x, y) = (axes[first] * a, axes[second] * b);
-            turns.push(DMat3::from_cols(x, y, x.cross(y)));
-        }
-        if !ambiguous {
-            break;
+/// Some of the surfaces of a suspect make a measurement too: one that knows of fewer attacks.
+impl FromIterator<Surface> for Measurement {
+    fn from_iter<I: IntoIterator<Item = Surface>>(surfaces: I) -> Measurement {
+        Measurement {
+            surfaces: surfaces.into_iter().collect(),
         }
     }
-    turns
+}
+
+/// Surfaces until the first kind of smoothing has been undone.
+pub const FIRST_FAMILY: usize = 2 + FAMILIES[0].len();
+
+impl Surfaces {
+    /// The soft symbols of a key from up to so many surfaces: no more are measured than it takes to find its mark.
+    pub fn read(
+        self,
+        most: usize,
+        key: &Key,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        search::read(&mut self.take(most).map(Cow::Owned), key, progress)
+    }
 }

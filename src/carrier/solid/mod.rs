@@ -8,38 +8,47 @@
 //! The method and its constants are this project's own (docs/REFERENCES.md, "SOLID"). QIM with dither: Chen and Wornell 2001.
 
 mod embed;
+mod field;
 mod flux;
 mod measurement;
+mod problem;
 mod refine;
+mod search;
+mod store;
+mod strength;
 
 pub use embed::{NEEDED_WINDOWS, embed};
-pub use measurement::Measurement;
+pub use measurement::{FIRST_FAMILY, Measurement, Surface, Surfaces};
 
 use crate::code::Symbol;
 use crate::geometry::{Pose, outward};
 use crate::key::{Key, Prf};
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use flux::Placement;
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Distance of lattice points, in units of the frame: about 4 % of the diagonal.
-const PITCH: f64 = 0.2;
+/// Distances of lattice points, in units of the frame: a fifth is about 4 % of the diagonal.
+const PITCHES: [f64; 5] = [0.07, 0.1, 0.14, 0.2, 0.3];
 
-/// Radius of the windows about them.
-const RADIUS: f64 = 1.2 * PITCH;
+/// The area of a surface, in squared pitches, for which an embedder uses a pitch: some 1 000 to 3 500 windows. With fewer there is
+/// too little to say a message with; with more, windows are so small that attacks reach into them. One pitch suits every
+/// surface whose area in its own frame is 2 to 80, or two.
+const AREAS_TO_EMBED: std::ops::Range<f64> = 400.0..930.0;
 
-/// Steps of the quantizer, in units of the pitch squared. A step suits one strength; a detector tries all.
-const STEPS: [f64; 3] = [0.0055, 0.011, 0.022];
+/// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
+const AREAS: std::ops::Range<f64> = 330.0..1100.0;
 
-/// The step for a strength: 0.022 at 0.08 % of the diagonal, in proportion, to the nearest there is.
-fn step_for(rms_rel: f64) -> f64 {
-    let ideal = 0.022 * rms_rel / 0.0008;
-    let distance = |step: f64| libm::log(step / ideal).abs();
-    STEPS
-        .into_iter()
-        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-        .unwrap_or(STEPS[0])
+/// Steps of the quantizer: the displacement of a surface, in units of the frame, that takes a window of about a squared pitch
+/// of it from one symbol to the same symbol again. Each is smaller than the one before by a factor of sqrt 2.
+const STEPS: [f64; 6] = [0.035, 0.0247, 0.0175, 0.0124, 0.00875, 0.0062];
+
+/// The steps for a strength, the largest first: 0.035 at 0.08 % of the diagonal, in proportion. Large steps stand more noise;
+/// smaller ones ask less of meshes with few vertices.
+fn steps_for(rms_rel: f64) -> &'static [f64] {
+    let ideal = STEPS[0] * rms_rel / 0.0008;
+    let first = STEPS.partition_point(|step| *step > 1.19 * ideal);
+    &STEPS[first.min(STEPS.len() - 1)..]
 }
 
 /// A mesh with its triangles facing outwards.
@@ -50,29 +59,46 @@ fn oriented(mesh: &Mesh) -> Mesh {
     }
 }
 
-/// The frame of an oriented mesh: by volume moments, or by area moments where it encloses next to nothing.
-fn pose_of(mesh: &Mesh) -> Option<Pose> {
-    Pose::of_volume(mesh).or_else(|| Pose::of(mesh))
+/// The frame of an oriented mesh with a boundary: by volume moments, or by area moments where it encloses next to nothing.
+fn pose_of(mesh: &Mesh, boundary: &[(u32, u32)]) -> Option<Pose> {
+    Pose::of_volume(mesh, boundary).or_else(|| Pose::of(mesh))
+}
+
+/// The directed edges of a mesh that have one face.
+fn boundary(mesh: &Mesh) -> Vec<(u32, u32)> {
+    Edges::new(mesh).boundary().collect()
+}
+
+/// The pitches for a surface of an area in units of the frame.
+fn pitches(area: f64, areas: std::ops::Range<f64>) -> impl Iterator<Item = f64> {
+    PITCHES
+        .into_iter()
+        .filter(move |pitch| areas.contains(&(area / (pitch * pitch))))
 }
 
 /// Windows that a mesh offers to a lattice that lies along its axes, as far as its vertices are free to serve them; a key's
 /// own lattice sees about as many.
 pub fn num_windows(mesh: &Mesh) -> usize {
     let mesh = oriented(mesh);
-    let along = Placement {
-        rotation: DMat3::IDENTITY,
-        origin: DVec3::ZERO,
-        scale: 1.0,
+    let Some(pose) = pose_of(&mesh, &boundary(&mesh)) else {
+        return 0;
     };
-    let windows = pose_of(&mesh).map_or(0, |pose| {
-        flux::windows(&flux::clusters(&mesh, &pose), &along).len()
-    });
-    windows.min(3 * mesh.positions.len())
+    let num = |pitch| {
+        let along = Placement {
+            rotation: DMat3::IDENTITY,
+            origin: DVec3::ZERO,
+            pitch,
+        };
+        flux::windows(&flux::clusters(&mesh, &pose, pitch), &along).len()
+    };
+    let most = pitches(mesh.area() / (pose.size * pose.size), AREAS_TO_EMBED).map(num);
+    most.max().unwrap_or(0).min(3 * mesh.positions.len())
 }
 
 /// The lattice of one key: where it lies, and what its points hold.
 struct Lattice {
     rotation: DMat3,
+    /// In pitches.
     shift: DVec3,
     symbols: Prf,
 }
@@ -90,21 +116,20 @@ impl Lattice {
             q * libm::sin(c),
             q * libm::cos(c),
         );
-        let shift = DVec3::new(uniform(3), uniform(4), uniform(5)) - DVec3::splat(0.5);
         Lattice {
             rotation: DMat3::from_quat(turn),
-            shift: shift * PITCH,
+            shift: DVec3::new(uniform(3), uniform(4), uniform(5)) - DVec3::splat(0.5),
             symbols: key.prf("solid"),
         }
     }
 
     /// The lattice in a frame whose axes are turned.
-    fn placed(&self, turn: DMat3) -> Placement {
+    fn placed(&self, turn: DMat3, pitch: f64) -> Placement {
         let rotation = turn * self.rotation;
         Placement {
             rotation,
-            origin: rotation * self.shift,
-            scale: 1.0,
+            origin: rotation * self.shift * pitch,
+            pitch,
         }
     }
 
@@ -118,4 +143,24 @@ impl Lattice {
 
 fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// The cosine of an angle in turns, to within 1e-11, from additions and products alone: a detector takes millions of them.
+fn cosine(turns: f64) -> f64 {
+    /// Adding and subtracting it rounds to the nearest whole number.
+    const ROUND: f64 = 1.5 / f64::EPSILON;
+    /// Of the sine of an angle in turns: `(-1)^n tau^(2n+1) / (2n+1)!`.
+    const SERIES: [f64; 8] = {
+        let mut series = [TAU; 8];
+        let mut n = 1;
+        while n < 8 {
+            series[n] = -series[n - 1] * TAU * TAU / ((2 * n) as f64 * (2 * n + 1) as f64);
+            n += 1;
+        }
+        series
+    };
+    let beyond = (turns - (turns + ROUND - ROUND)).abs();
+    let quarter = 0.25 - beyond;
+    let square = quarter * quarter;
+    quarter * SERIES.iter().rev().fold(0.0, |sum, c| sum * square + c)
 }

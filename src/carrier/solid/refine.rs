@@ -1,74 +1,98 @@
-//! Finding the lattice again when an attack has moved the frame: by the pilots alone, so that the other symbols, which
-//! never took part in the search, can testify without a charge for it.
+//! Finding the lattice again when an attack has moved the frame or smoothed the surface by an unknown strength: by the
+//! pilots alone, so that the other symbols, which never took part in the search, can testify without a charge for it.
 
-use super::Lattice;
-use super::flux::{Cluster, Placement, windows};
+use super::flux::{Placement, Window};
+use super::{Lattice, cosine};
 use crate::code::Symbol;
 use crate::order::order_by;
 use crate::random::Random;
 use std::f64::consts::TAU;
 
+/// Degrees of freedom: translation, rotation, logarithms of the scale and of the strength.
+const FREEDOMS: usize = 8;
+type Nudge = [f64; FREEDOMS];
+
 /// A difference quotient's step.
 const EPSILON: f64 = 0.006;
-/// Poses that are tried in the linear model, and those that are followed uphill.
-const POSES: usize = 4000;
-const FOLLOWED: usize = 40;
+/// Nudges that are tried in the linear model, and those that are followed uphill.
+const TRIED: usize = 3000;
+const FOLLOWED: usize = 24;
 const CLIMBS: usize = 15;
+/// What is added to the curvature in every direction, as a share of its trace: turning a surface of revolution about its axis
+/// changes hardly anything, which is no reason to turn it far.
+const DAMPING: f64 = 1e-3;
+/// A strength may be off by tens of percent where a scale is off by some.
+const STRENGTHS_PER_SCALE: f64 = 12.0;
 
-/// A placement near the given one at which the pilots agree best.
-pub fn refine(
-    clusters: &[Cluster],
-    start: &Placement,
-    lattice: &Lattice,
-    step_size: f64,
-) -> Placement {
-    let wide = climb(clusters, start, lattice, step_size, 0.007, [0.3, 0.8, 1.6]);
-    climb(clusters, &wide, lattice, step_size, 0.003, [0.25, 0.6, 1.2])
+/// Where a lattice is looked for, and on the surface of what strength of smoothing.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    pub placement: Placement,
+    /// 0 for the suspect itself.
+    pub strength: f64,
 }
 
-/// Pilots in the linear model of a placement's neighbourhood.
+impl View {
+    fn nudged(&self, nudge: &Nudge) -> View {
+        let [similarity @ .., strength] = nudge;
+        View {
+            placement: self.placement.nudged(similarity),
+            strength: self.strength * libm::exp(STRENGTHS_PER_SCALE * strength),
+        }
+    }
+}
+
+/// A view near the given one at which the pilots agree best. `see` gives the windows of a view.
+pub fn refine(
+    see: &dyn Fn(&View) -> Vec<Window>,
+    start: &View,
+    lattice: &Lattice,
+    step: f64,
+) -> View {
+    let wide = climb(see, start, lattice, step, 0.007, [0.3, 0.8, 1.6]);
+    climb(see, &wide, lattice, step, 0.003, [0.25, 0.6, 1.2])
+}
+
+/// Pilots in the linear model of a view's neighbourhood.
 struct Pilots {
-    /// In steps, at the placement.
+    /// In steps, at the view.
     phases: Vec<f64>,
-    slopes: Vec<[f64; 7]>,
+    slopes: Vec<Nudge>,
     weights: Vec<f64>,
 }
 
 fn climb(
-    clusters: &[Cluster],
-    start: &Placement,
+    see: &dyn Fn(&View) -> Vec<Window>,
+    start: &View,
     lattice: &Lattice,
-    step_size: f64,
+    step: f64,
     spread: f64,
     spreads: [f64; 3],
-) -> Placement {
-    let pilots = Pilots::new(clusters, start, lattice, step_size);
+) -> View {
+    let pilots = Pilots::new(see, start, lattice, step / start.placement.pitch);
     let mut random = Random::new(0x50_4f_53_45);
-    let poses: Vec<(f64, [f64; 7])> = (0..POSES)
+    let nudges: Vec<(f64, Nudge)> = (0..TRIED)
         .map(|number| {
             let size = if number == 0 {
                 0.0
             } else {
                 spread * spreads[number % 3]
             };
-            let pose = std::array::from_fn(|_| size * random.normal());
-            (pilots.agreement(&pose), pose)
+            let nudge = std::array::from_fn(|_| size * random.normal());
+            (pilots.agreement(&nudge), nudge)
         })
         .collect();
     // The best come first; where none is better, the start itself is followed.
-    let order = order_by(poses.iter().map(|(agreement, _)| descending(*agreement)));
-    let poses: Vec<_> = order
+    let order = order_by(nudges.iter().map(|(agreement, _)| descending(*agreement)));
+    let curvature = pilots.curvature();
+    let best = order
         .iter()
         .take(FOLLOWED)
-        .map(|&(_, pose)| poses[pose as usize])
-        .chain([poses[0]])
-        .collect();
-    let curvature = pilots.curvature();
-    let best = poses
-        .into_iter()
-        .map(|(_, pose)| pilots.uphill(pose, &curvature))
+        .map(|&(_, number)| nudges[number as usize].1)
+        .chain([nudges[0].1])
+        .map(|nudge| pilots.uphill(nudge, &curvature))
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or(*start, |(_, pose)| start.nudged(&pose))
+    best.map_or(*start, |(_, nudge)| start.nudged(&nudge))
 }
 
 /// A key that orders numbers from the largest to the smallest.
@@ -82,53 +106,63 @@ fn descending(number: f64) -> u64 {
 }
 
 impl Pilots {
-    fn new(clusters: &[Cluster], start: &Placement, lattice: &Lattice, step_size: f64) -> Pilots {
-        let pilots: Vec<_> = windows(clusters, start)
+    fn new(
+        see: &dyn Fn(&View) -> Vec<Window>,
+        start: &View,
+        lattice: &Lattice,
+        step: f64,
+    ) -> Pilots {
+        let pilots: Vec<_> = see(start)
             .into_iter()
             .filter_map(|window| {
                 let (dither, symbol) = lattice.at(window.index);
                 (symbol == Symbol::Pilot).then_some((window, dither))
             })
             .collect();
-        let mut slopes = vec![[0.0; 7]; pilots.len()];
-        for axis in 0..7 {
-            let mut nudge = [0.0; 7];
+        let mut slopes = vec![[0.0; FREEDOMS]; pilots.len()];
+        let num_moving = if start.strength > 0.0 {
+            FREEDOMS
+        } else {
+            FREEDOMS - 1
+        };
+        for axis in 0..num_moving {
+            let mut nudge = [0.0; FREEDOMS];
             nudge[axis] = EPSILON;
-            let nudged = windows(clusters, &start.nudged(&nudge));
+            let nudged = see(&start.nudged(&nudge));
             for ((window, _), slope) in pilots.iter().zip(&mut slopes) {
                 if let Ok(found) = nudged.binary_search_by_key(&window.index, |other| other.index) {
-                    slope[axis] = (nudged[found].flux - window.flux) / (EPSILON * step_size);
+                    slope[axis] = (nudged[found].flux - window.flux) / (EPSILON * step);
                 }
             }
         }
         Pilots {
             phases: pilots
                 .iter()
-                .map(|(window, dither)| window.flux / step_size + dither)
+                .map(|(window, dither)| window.flux / step + dither)
                 .collect(),
             slopes,
             weights: pilots.iter().map(|(window, _)| window.weight).collect(),
         }
     }
 
-    fn phase(&self, pilot: usize, pose: &[f64; 7]) -> f64 {
+    fn phase(&self, pilot: usize, nudge: &Nudge) -> f64 {
         let slope: f64 = self.slopes[pilot]
             .iter()
-            .zip(pose)
+            .zip(nudge)
             .map(|(slope, x)| slope * x)
             .sum();
         self.phases[pilot] + slope
     }
 
-    fn agreement(&self, pose: &[f64; 7]) -> f64 {
+    fn agreement(&self, nudge: &Nudge) -> f64 {
         (0..self.phases.len())
-            .map(|p| self.weights[p] * libm::cos(TAU * self.phase(p, pose)))
+            .map(|p| self.weights[p] * cosine(self.phase(p, nudge)))
             .sum()
     }
 
     /// The mean curvature of the agreement: half of `(2 pi)^2 sum w slope slope^T`.
-    fn curvature(&self) -> [[f64; 7]; 7] {
-        let mut curvature = [[0.0; 7]; 7];
+    fn curvature(&self) -> [Nudge; FREEDOMS] {
+        let mut curvature = [[0.0; FREEDOMS]; FREEDOMS];
         for (slope, weight) in self.slopes.iter().zip(&self.weights) {
             for (row, a) in curvature.iter_mut().zip(slope) {
                 row.iter_mut()
@@ -140,30 +174,32 @@ impl Pilots {
     }
 
     /// Follows the gradient, scaled by the curvature, for a few steps.
-    fn uphill(&self, mut pose: [f64; 7], curvature: &[[f64; 7]; 7]) -> (f64, [f64; 7]) {
+    fn uphill(&self, mut nudge: Nudge, curvature: &[Nudge; FREEDOMS]) -> (f64, Nudge) {
         for _ in 0..CLIMBS {
-            let mut gradient = [0.0; 7];
+            let mut gradient = [0.0; FREEDOMS];
             for p in 0..self.phases.len() {
-                let push = -TAU * self.weights[p] * libm::sin(TAU * self.phase(p, &pose));
+                let sine = cosine(self.phase(p, &nudge) - 0.25);
+                let push = -TAU * self.weights[p] * sine;
                 gradient
                     .iter_mut()
                     .zip(&self.slopes[p])
                     .for_each(|(g, slope)| *g += push * slope);
             }
             let step = solve(*curvature, gradient);
-            pose.iter_mut()
+            nudge
+                .iter_mut()
                 .zip(step)
                 .for_each(|(x, step)| *x += 0.35 * step);
         }
-        (self.agreement(&pose), pose)
+        (self.agreement(&nudge), nudge)
     }
 }
 
-/// Gauss-Jordan elimination on a symmetric positive semidefinite matrix, with a little added to its diagonal.
-fn solve(mut a: [[f64; 7]; 7], mut b: [f64; 7]) -> [f64; 7] {
+/// Gauss-Jordan elimination on a symmetric positive semidefinite matrix, damped.
+fn solve(mut a: [Nudge; FREEDOMS], mut b: Nudge) -> Nudge {
     let trace: f64 = a.iter().enumerate().map(|(i, row)| row[i]).sum();
-    for pivot in 0..7 {
-        a[pivot][pivot] += 1e-9 * trace + 1e-300;
+    for pivot in 0..FREEDOMS {
+        a[pivot][pivot] += DAMPING * trace + 1e-300;
         let (row, known) = (a[pivot], b[pivot]);
         for (other, (entries, right)) in a.iter_mut().zip(&mut b).enumerate() {
             if other != pivot {

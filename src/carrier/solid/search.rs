@@ -1,0 +1,350 @@
+//! Reading a measurement with a key: which surface, pitch, turn of the frame, step and strength of smoothing, and where
+//! exactly the lattice lies. Pilots choose, among ways of reading that were declared before any key was known.
+//!
+//! Three kinds of tests share the probability of a false alarm in equal parts, each charged for its own number: the suspect
+//! as it is, in all turns of its frame; the surfaces that undo what may have been done to it; and the symbols that are no
+//! pilots, where the pilots agree best after a search of which they know nothing (docs/SECURITY.md).
+
+use super::flux::{Cluster, Window, windows};
+use super::measurement::{Axes, Origin, Surface};
+use super::refine::{View, refine};
+use super::strength::{FAMILIES, blend, weights};
+use super::{AREAS, Lattice, STEPS, cosine, field, pitches};
+use crate::carrier::{Hypothesis, Reading};
+use crate::code::{SoftSymbol, Symbol};
+use crate::key::Key;
+use crate::progress::{Cancelled, Progress, Stage, step};
+use glam::{DMat3, DVec3};
+use std::borrow::Cow;
+
+/// Pilots that agree better than this, in nats, end the search: what follows would only undo attacks that did not happen.
+const ENOUGH: f64 = 40.0;
+
+/// Strengths that are tried between two nodes, the further node included.
+const STRENGTHS: usize = 8;
+
+/// The share of the time that a search takes which ends in a scan, before that.
+const SHARE_BEFORE_SCAN: f64 = 0.2;
+
+/// Kinds of tests.
+const KINDS: usize = 3;
+
+/// Ways of reading that are followed, of each kind.
+const FOLLOWED: usize = 2;
+
+/// Reads surfaces with a key, in their order, until it is sure.
+pub fn read(
+    surfaces: &mut dyn Iterator<Item = Cow<Surface>>,
+    key: &Key,
+    progress: &mut dyn Progress,
+) -> Result<Reading, Cancelled> {
+    let lattice = Lattice::of(key);
+    let Some(suspect) = surfaces.next() else {
+        return Ok(Reading::default());
+    };
+    let mut search = Search::new(&lattice, &suspect);
+    let num_surfaces = 2 + FAMILIES.iter().map(|family| family.len()).sum::<usize>();
+    let is_undetermined = suspect.axes.contains(&Axes::Undetermined);
+    let share = if is_undetermined {
+        SHARE_BEFORE_SCAN
+    } else {
+        1.0
+    };
+    let mut looked = 1;
+    while !search.is_sure() {
+        step(
+            progress,
+            Stage::Test,
+            share * looked as f64 / num_surfaces as f64,
+        )?;
+        let Some(surface) = surfaces.next() else {
+            break;
+        };
+        search.look(&surface);
+        looked += 1;
+    }
+    if is_undetermined && !search.is_sure() {
+        search.scan(suspect.axes, progress)?;
+    }
+    Ok(search.conclude())
+}
+
+/// A measured surface, as the pilots see it.
+struct Node {
+    origin: Origin,
+    clusters: Vec<Cluster>,
+    /// For each pitch and turn.
+    pilots: Vec<Vec<Window>>,
+}
+
+/// A way of reading.
+#[derive(Clone)]
+struct Candidate {
+    /// How well the pilots agree, in nats: the exponent of their bound.
+    evidence: f64,
+    /// Indices of the nodes that its strength lies among, and their strengths.
+    nodes: Vec<usize>,
+    strengths: Vec<f64>,
+    view: View,
+    step: f64,
+}
+
+struct Search<'a> {
+    lattice: &'a Lattice,
+    pitches: Vec<f64>,
+    turns: Vec<DMat3>,
+    nodes: Vec<Node>,
+    num_windows: usize,
+    /// The best ways of reading the suspect as it is, best first.
+    own: Vec<Candidate>,
+    /// The best ways of undoing something.
+    undone: Vec<Candidate>,
+    /// The best of a scan.
+    scanned: Option<Candidate>,
+}
+
+impl<'a> Search<'a> {
+    fn new(lattice: &'a Lattice, suspect: &Surface) -> Search<'a> {
+        let area = suspect
+            .store
+            .clusters()
+            .iter()
+            .map(|cluster| cluster.weight)
+            .sum();
+        let fine_enough = |pitch: &f64| *pitch >= suspect.store.pitch;
+        let mut search = Search {
+            lattice,
+            pitches: pitches(area, AREAS).filter(fine_enough).collect(),
+            turns: turns(suspect.axes != [Axes::Distinct; 2]),
+            nodes: Vec::new(),
+            num_windows: 0,
+            own: Vec::new(),
+            undone: Vec::new(),
+            scanned: None,
+        };
+        search.look(suspect);
+        search
+    }
+
+    fn is_sure(&self) -> bool {
+        let best = self
+            .own
+            .iter()
+            .chain(&self.undone)
+            .map(|candidate| candidate.evidence);
+        best.fold(0.0, f64::max) >= ENOUGH
+    }
+
+    /// Looks at a surface, and at those between it and the last of its family.
+    fn look(&mut self, surface: &Surface) {
+        let clusters = surface.store.clusters();
+        let mut pilots = Vec::new();
+        for &pitch in &self.pitches {
+            for &turn in &self.turns {
+                let mut seen = windows(&clusters, &self.lattice.placed(turn, pitch));
+                self.num_windows = self.num_windows.max(seen.len());
+                seen.retain_mut(|window| {
+                    let (dither, symbol) = self.lattice.at(window.index);
+                    window.dither = dither;
+                    symbol == Symbol::Pilot
+                });
+                pilots.push(seen);
+            }
+        }
+        let node = Node {
+            origin: surface.origin,
+            clusters,
+            pilots,
+        };
+        self.nodes.push(node);
+        let last = self.nodes.len() - 1;
+        let Origin::Filtered { family, node } = surface.origin else {
+            return self.consider(&[last], &[0.0], 0.0);
+        };
+        let of_family = |node: &usize| match self.nodes[*node].origin {
+            Origin::Suspect => true,
+            Origin::Refined => false,
+            Origin::Filtered { family: other, .. } => other == family,
+        };
+        let strength_of = |node: &usize| match self.nodes[*node].origin {
+            Origin::Filtered { family, node } => {
+                FAMILIES[usize::from(family)].strength(node.into())
+            }
+            _ => 0.0,
+        };
+        let nodes: Vec<usize> = (0..=last).filter(of_family).collect();
+        let strengths: Vec<f64> = nodes.iter().map(strength_of).collect();
+        let high = FAMILIES[usize::from(family)].strength(node.into());
+        let low = strengths[strengths.len() - 2];
+        for part in 1..=STRENGTHS {
+            let share = part as f64 / STRENGTHS as f64;
+            self.consider(&nodes, &strengths, low + (high - low) * share);
+        }
+    }
+
+    /// Weighs all turns, pitches and steps of a surface of some strength.
+    fn consider(&mut self, nodes: &[usize], strengths: &[f64], strength: f64) {
+        let parts = weights(strengths, strength);
+        let mut place = 0;
+        for pitch in self.pitches.clone() {
+            for turn in self.turns.clone() {
+                let lists = parts.iter().map(|&(part, weight)| {
+                    (self.nodes[nodes[part]].pilots[place].as_slice(), weight)
+                });
+                let pilots = blend(lists);
+                place += 1;
+                let best = if nodes == [0] {
+                    &mut self.own
+                } else {
+                    &mut self.undone
+                };
+                for step in STEPS {
+                    let evidence = evidence(&pilots, step / pitch);
+                    let place = best.partition_point(|other| other.evidence >= evidence);
+                    if place < FOLLOWED {
+                        let candidate = Candidate {
+                            evidence,
+                            nodes: nodes.to_vec(),
+                            strengths: strengths.to_vec(),
+                            view: View {
+                                placement: self.lattice.placed(turn, pitch),
+                                strength,
+                            },
+                            step,
+                        };
+                        best.insert(place, candidate);
+                        best.truncate(FOLLOWED);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Turns the suspect about the axes that its frame cannot tell apart.
+    fn scan(&mut self, axes: [Axes; 2], progress: &mut dyn Progress) -> Result<(), Cancelled> {
+        let share = (1.0 - SHARE_BEFORE_SCAN) / self.pitches.len() as f64;
+        for (number, &pitch) in self.pitches.iter().enumerate() {
+            let start = SHARE_BEFORE_SCAN + share * number as f64;
+            let clusters = &self.nodes[0].clusters;
+            let found = field::scan(clusters, axes, self.lattice, pitch, &mut |part| {
+                step(progress, Stage::Test, start + share * part)
+            })?;
+            let best = self.scanned.as_ref().map_or(0.0, |best| best.evidence);
+            if found.evidence > best {
+                self.scanned = Some(Candidate {
+                    evidence: found.evidence,
+                    nodes: vec![0],
+                    strengths: vec![0.0],
+                    view: View {
+                        placement: self.lattice.placed(found.turn, pitch),
+                        strength: 0.0,
+                    },
+                    step: found.step,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// All windows of a candidate's surface at a view.
+    fn see(&self, candidate: &Candidate, view: &View) -> Vec<Window> {
+        let parts = weights(&candidate.strengths, view.strength);
+        let lists: Vec<(Vec<Window>, f64)> = parts
+            .into_iter()
+            .map(|(part, weight)| {
+                let clusters = &self.nodes[candidate.nodes[part]].clusters;
+                (windows(clusters, &view.placement), weight)
+            })
+            .collect();
+        blend(
+            lists
+                .iter()
+                .map(|(list, weight)| (list.as_slice(), *weight)),
+        )
+    }
+
+    /// All symbols of a candidate at a view.
+    fn symbols(&self, candidate: &Candidate, view: &View) -> Vec<SoftSymbol> {
+        let step = candidate.step / view.placement.pitch;
+        let read = |window: Window| {
+            let (dither, symbol) = self.lattice.at(window.index);
+            let weight = window.weight.max(0.0);
+            SoftSymbol {
+                symbol,
+                value: weight * cosine(window.flux / step + dither),
+                weight,
+            }
+        };
+        self.see(candidate, view).into_iter().map(read).collect()
+    }
+
+    fn conclude(&self) -> Reading {
+        let num_views = self.pitches.len() * self.turns.len() * STEPS.len();
+        let num_undone = 1 + FAMILIES
+            .iter()
+            .map(|family| STRENGTHS * family.len())
+            .sum::<usize>();
+        let mut hypotheses = Vec::new();
+        for (candidates, num_declared) in [
+            (&self.own, num_views),
+            (&self.undone, num_views * num_undone),
+        ] {
+            hypotheses.extend(candidates.iter().map(|candidate| Hypothesis {
+                symbols: self.symbols(candidate, &candidate.view),
+                ln_num_tests: libm::log((KINDS * num_declared) as f64),
+            }));
+        }
+        let to_refine = [
+            (self.own.first(), 4.5),
+            (self.undone.first(), 9.0),
+            (self.scanned.as_ref(), 9.0),
+        ];
+        for (candidate, least) in to_refine {
+            // What is less than the best of so many that chance gives leads nowhere, and there is no need where all is clear.
+            let is_worth_it =
+                |candidate: &&Candidate| candidate.evidence >= least && !self.is_sure();
+            let Some(candidate) = candidate.filter(is_worth_it) else {
+                continue;
+            };
+            let see = |view: &View| self.see(candidate, view);
+            let view = refine(&see, &candidate.view, self.lattice, candidate.step);
+            let mut symbols = self.symbols(candidate, &view);
+            symbols.retain(|soft| soft.symbol != Symbol::Pilot);
+            hypotheses.push(Hypothesis {
+                symbols,
+                ln_num_tests: libm::log((KINDS * to_refine.len()) as f64),
+            });
+        }
+        Reading {
+            hypotheses,
+            num_addresses: self.num_windows,
+        }
+    }
+}
+
+/// How well pilots agree with a quantizer's step, in nats.
+fn evidence(pilots: &[Window], step: f64) -> f64 {
+    let (mut sum, mut energy) = (0.0, 0.0);
+    for pilot in pilots {
+        let weight = pilot.weight.max(0.0);
+        sum += weight * cosine(pilot.flux / step + pilot.dither);
+        energy += weight * weight;
+    }
+    if sum > 0.0 { sum * sum / energy } else { 0.0 }
+}
+
+/// The rotations that take a frame into itself: 4 if its axes are known but for their signs, else 24.
+fn turns(near: bool) -> Vec<DMat3> {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let mut turns = Vec::new();
+    for (first, second) in [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)] {
+        for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            let (x, y) = (axes[first] * a, axes[second] * b);
+            turns.push(DMat3::from_cols(x, y, x.cross(y)));
+        }
+        if !near {
+            break;
+        }
+    }
+    turns
+}

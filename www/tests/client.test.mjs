@@ -48,7 +48,9 @@ test("it marks to the same bytes as in Node, heard all the way, its inputs left 
     const stages = new Set();
     const { model, report } = await client.embed(host, undefined, "CLIENT", key, {}, { onProgress: (stage) => stages.add(stage) });
     const reading = await client.extract(await client.measure(model), key);
-    return { host: host.length, key: key.length, sha256: await sha256(model), report, reading, stages: [...stages] };
+    const tried = [];
+    const detected = await client.detect(model, undefined, key, "CLIENT", { onProgress: (stage, fraction) => stage === "test" && tried.push(fraction) });
+    return { host: host.length, key: key.length, sha256: await sha256(model), report, reading, detected, tried, stages: [...stages] };
   });
   const host = meshmark.demoModel();
   const key = new Uint8Array(32).fill(9);
@@ -56,6 +58,8 @@ test("it marks to the same bytes as in Node, heard all the way, its inputs left 
   assert.equal(inBrowser.sha256, createHash("sha256").update(model).digest("hex"));
   assert.deepEqual(inBrowser.report, report);
   assert.deepEqual(inBrowser.reading, meshmark.extract(meshmark.measure(model, undefined), key));
+  assert.deepEqual(inBrowser.detected, meshmark.detect(model, undefined, key, "CLIENT"));
+  assert.ok(inBrowser.tried.length > 0, "no hypothesis is heard of");
   assert.equal(inBrowser.host, host.length);
   assert.equal(inBrowser.key, 32);
   assert.ok(inBrowser.stages.includes("embed"), inBrowser.stages.join());

@@ -13,6 +13,7 @@ export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F
   measure: true,
   extract: true,
   verify: true,
+  detect: true,
   inspect: true,
   demoModel: true,
   version: true,

@@ -107,6 +107,31 @@ test("every carrier speaks, in its order, and a carrier alone leaves the other s
   assert.throws(none, (error) => error instanceof MeshmarkError && error.code === "options.no-carrier");
 });
 
+test("detect reads at one go what measure, extract and verify read", async () => {
+  await meshmark.init();
+  const [key, stranger] = [5, 6].map((byte) => new Uint8Array(32).fill(byte));
+  const { model } = meshmark.embed(meshmark.demoModel(), undefined, "GO", key);
+  const evidence = meshmark.measure(model, undefined);
+  const answer = ({ verdict, tag }) => [verdict, tag];
+  assert.deepEqual(answer(meshmark.detect(model, undefined, key)), ["found", "GO"]);
+  assert.deepEqual(answer(meshmark.detect(model, undefined, key, "GO")), answer(meshmark.verify(evidence, key, "GO")));
+  assert.deepEqual(answer(meshmark.detect(model, undefined, key, "OTHER")), answer(meshmark.verify(evidence, key, "OTHER")));
+  assert.deepEqual(answer(meshmark.detect(model, undefined, stranger)), answer(meshmark.extract(evidence, stranger)));
+  const fractions = [];
+  meshmark.detect(model, undefined, stranger, undefined, (stage, fraction) => stage === "test" && fractions.push(fraction));
+  assert.ok(fractions.length > 1, "no hypothesis is heard of");
+  assert.deepEqual(fractions, fractions.toSorted((a, b) => a - b));
+});
+
+test("an embedding foretells what its mark survives, each kind of change once", async () => {
+  await meshmark.init();
+  const embed = (options) => meshmark.embed(meshmark.demoModel(), undefined, "FORE", new Uint8Array(32).fill(5), options).report.forecast;
+  const both = embed({});
+  assert.deepEqual(both.map(({ attack }) => attack).sort(), ["crop", "noise", "none", "quantize", "simplify-30", "simplify-70", "smooth"]);
+  assert.equal(both.find(({ attack }) => attack === "none").level, "green");
+  assert.equal(embed({ carriers: ["ring"] }).find(({ attack }) => attack === "smooth").level, "red");
+});
+
 test("a key of another length is refused", async () => {
   await meshmark.init();
   const isKeyError = (error) => error instanceof MeshmarkError && error.code.startsWith("key.");
@@ -116,7 +141,10 @@ test("a key of another length is refused", async () => {
 test("an aborted signal stops the work with code aborted", async () => {
   await meshmark.init();
   const measure = () => meshmark.measure(meshmark.demoModel(), undefined, undefined, AbortSignal.abort());
-  assert.throws(measure, (error) => error instanceof MeshmarkError && error.code === "aborted");
+  const detect = () => meshmark.detect(meshmark.demoModel(), undefined, new Uint8Array(32), undefined, undefined, AbortSignal.abort());
+  for (const work of [measure, detect]) {
+    assert.throws(work, (error) => error instanceof MeshmarkError && error.code === "aborted");
+  }
 });
 
 test("where there is no Worker, createClient rejects with a code", async () => {

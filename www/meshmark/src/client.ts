@@ -19,7 +19,7 @@ export interface ClientOptions {
 export interface CallOptions {
   /** Aborting rejects the call with code `aborted`; a running one is stopped at once, by ending its worker. */
   signal?: AbortSignal;
-  /** Heard from `embed` and `measure`. */
+  /** Heard from `embed`, `measure` and `detect`. */
   onProgress?: OnProgress;
 }
 
@@ -37,6 +37,13 @@ export interface Client {
   measure(model: Uint8Array, files?: Files, call?: CallOptions): Promise<Uint8Array>;
   extract(evidence: Uint8Array, key: Uint8Array, call?: CallOptions): Promise<Extraction>;
   verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, call?: CallOptions): Promise<Verification>;
+  detect(
+    model: Uint8Array,
+    files: Files | undefined,
+    key: Uint8Array,
+    expected?: Payload,
+    call?: CallOptions,
+  ): Promise<Extraction>;
   inspect(model: Uint8Array, files?: Files, call?: CallOptions): Promise<Inspection>;
   demoModel(call?: CallOptions): Promise<Uint8Array>;
   version(call?: CallOptions): Promise<string>;
@@ -85,6 +92,7 @@ class WorkerClient implements Client {
   measure: Client["measure"] = (model, files, call) => this.#call("measure", [model, files], call);
   extract: Client["extract"] = (evidence, key, call) => this.#call("extract", [evidence, key], call);
   verify: Client["verify"] = (evidence, key, expected, call) => this.#call("verify", [evidence, key, expected], call);
+  detect: Client["detect"] = (model, files, key, expected, call) => this.#call("detect", [model, files, key, expected], call);
   inspect: Client["inspect"] = (model, files, call) => this.#call("inspect", [model, files], call);
   demoModel: Client["demoModel"] = (call) => this.#call("demoModel", [], call);
   version: Client["version"] = (call) => this.#call("version", [], call);

@@ -15,6 +15,7 @@ export type {
   Embedding,
   Extraction,
   Files,
+  Forecast,
   Inspection,
   MeshmarkErrorObject,
   OnProgress,
@@ -85,6 +86,7 @@ export const embed: typeof wasm.embed = guarded(wasm.embed);
 export const measure: typeof wasm.measure = guarded(wasm.measure);
 export const extract: typeof wasm.extract = guarded(wasm.extract);
 export const verify: typeof wasm.verify = guarded(wasm.verify);
+export const detect: typeof wasm.detect = guarded(wasm.detect);
 export const inspect: typeof wasm.inspect = guarded(wasm.inspect);
 export const demoModel: typeof wasm.demoModel = guarded(wasm.demoModel);
 export const version: typeof wasm.version = guarded(wasm.version);

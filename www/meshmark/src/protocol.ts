@@ -21,6 +21,10 @@ export interface Calls {
   measure: { args: [model: Uint8Array, files: Files | undefined]; result: Uint8Array };
   extract: { args: [evidence: Uint8Array, key: Uint8Array]; result: Extraction };
   verify: { args: [evidence: Uint8Array, key: Uint8Array, expected: Payload]; result: Verification };
+  detect: {
+    args: [model: Uint8Array, files: Files | undefined, key: Uint8Array, expected: Payload | undefined];
+    result: Extraction;
+  };
   inspect: { args: [model: Uint8Array, files: Files | undefined]; result: Inspection };
   demoModel: { args: []; result: Uint8Array };
   version: { args: []; result: string };

@@ -19,6 +19,8 @@ function run(request: Request, onProgress: OnProgress): Calls[Method]["result"] 
       return meshmark.embed(...request.args, onProgress);
     case "measure":
       return meshmark.measure(...request.args, onProgress);
+    case "detect":
+      return meshmark.detect(...request.args, onProgress);
     case "deriveKey":
       return meshmark.deriveKey(...request.args);
     case "extract":

@@ -8,7 +8,7 @@ import { fileURLToPath } from "node:url";
 import { NodeIO } from "@gltf-transform/core";
 import * as meshmark from "meshmark";
 import { launch, serve } from "./browser.mjs";
-import { assertNoNewErrors, glbFromObj, OWNER, PASSPHRASE, repository, sharedModel, TAG } from "./support.mjs";
+import { assertNoNewErrors, glbFromObj, glbOf, OWNER, PASSPHRASE, repository, sharedModel, TAG } from "./support.mjs";
 
 const DESKTOP = { width: 1280, height: 800 };
 const CUBE = `
@@ -72,6 +72,12 @@ async function open(options = {}) {
   });
   await context.addInitScript(() => {
     globalThis.violations = [];
+    globalThis.asked = []; // what workers were asked to do
+    const { postMessage } = Worker.prototype;
+    Worker.prototype.postMessage = function (message, ...rest) {
+      globalThis.asked.push(message.method);
+      return postMessage.call(this, message, ...rest);
+    };
     addEventListener("securitypolicyviolation", (event) => globalThis.violations.push(`${event.violatedDirective} ${event.blockedURI}`));
   });
   page = await context.newPage();
@@ -101,6 +107,12 @@ const view = () => page.locator(".view:visible");
 const result = () => view().locator(".result");
 const headline = () => result().getByRole("heading", { level: 2 }).textContent();
 const facts = () => view().locator(".facts");
+const canvas = () => view().getByRole("application");
+const button = (name) => view().getByRole("button", { name, exact: true });
+const scale = async (unit) => (await view().locator(`[data-legend="${unit}"] span`).allTextContents()).join(" ");
+const preview = () => page.locator("#preview");
+/** The preview's RMS displacement, in percent of the diagonal. */
+const previewRms = async () => parseFloat(await preview().locator("dd").first().textContent());
 const picture = (name) => page.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
 
 async function fillKey(passphrase = PASSPHRASE) {
@@ -148,11 +160,12 @@ for (const [name, source] of [
     assert.equal(await headline(), "Your mark is in the copy");
     await picture(`marked-${name}`);
     await page.getByRole("button", { name: "Heat map" }).click();
-    await page.getByText(/units = .* % of the diagonal/).waitFor();
+    assert.match(await scale("units"), /^0 0\.\d+ units 0\.\d+ units$/);
+    assert.match(await scale("percent"), /^0 0\.\d+ % 0\.\d+ %$/);
     await picture(`heat-${name}`);
-    for (const version of ["Before", "After"]) {
-      await page.getByRole("button", { name: version, pressed: false }).click();
-      await page.getByRole("button", { name: version, pressed: true }).waitFor();
+    for (const version of ["Original", "Marked"]) {
+      await button(version).click();
+      await button(version).and(page.locator('[aria-pressed="true"]')).waitFor();
     }
     const copy = await saved(/^Download/);
     assert.equal(basename(copy), name.replace(".glb", ".marked.glb"));
@@ -163,6 +176,7 @@ for (const [name, source] of [
     await check();
     assert.equal(await headline(), "Your mark was found");
     await result().getByText(/at most 1 in 10/).first().waitFor();
+    await result().getByText(/^Read from the (shape|connectivity|shape and the connectivity)\.$/).waitFor();
     await picture(`found-${name}`);
     const report = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8"));
     assert.equal(report.result.verdict, "found");
@@ -251,6 +265,115 @@ test("the carriers can be chosen, and one always stays", async () => {
   const { report } = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8"));
   assert.equal(await result().locator("dl div", { hasText: "Held by" }).locator("dd").textContent(), "Connectivity (RING)");
   assert.deepEqual(report.readBack.carriers.map(({ name, tag }) => [name, tag]), [["solid", null], ["ring", TAG]]);
+
+  const [warning, download] = [result().locator(".warning"), result().getByRole("button", { name: /^Download/ })];
+  assert.match(await warning.textContent(), /^It will not survive .*smoothing.*\.$/);
+  assert.ok((await warning.boundingBox()).y < (await download.boundingBox()).y, "the warning comes after the download");
+  await picture("warning");
+
+  await page.getByRole("button", { name: "Check this copy" }).click();
+  await facts().getByText("demo.marked.glb").waitFor();
+  await page.getByRole("button", { name: "Check this model" }).click();
+  await result().getByText("Read from the connectivity.").waitFor();
+});
+
+test("a strength is tried on the model before it is chosen, the last one wins, and what was tried is not done again", async () => {
+  const embeddings = () => page.evaluate(() => asked.filter((method) => method === "embed").length);
+  const tried = () => page.waitForFunction(() => document.querySelector("#preview")?.ariaBusy === "false");
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await preview().getByText("Tried with a key made for this preview.").waitFor();
+  const balanced = await previewRms();
+  for (const row of await preview().locator("li").allTextContents()) {
+    assert.match(row, /\w.*(Survives|Barely|Lost)$/);
+  }
+  assert.equal(await preview().locator("li").count(), 7);
+  await button("Marked").waitFor();
+  await picture("preview");
+
+  const seen = await page.evaluateHandle(() => {
+    const texts = [];
+    const content = document.querySelector("#preview-content");
+    new MutationObserver(() => texts.push(content.querySelector("dd")?.textContent)).observe(content, { childList: true });
+    return texts;
+  });
+  const before = await embeddings();
+  await page.getByLabel("Strength").selectOption("strong");
+  await page.waitForFunction((count) => asked.filter((method) => method === "embed").length > count, before);
+  await page.getByLabel("Strength").selectOption("subtle"); // while the strong one is tried
+  await page.waitForFunction((texts) => texts.length > 0, seen);
+  await tried();
+  assert.equal((await seen.jsonValue()).length, 1, "the strong one was shown too");
+  assert.ok((await previewRms()) < balanced, `${await previewRms()} % and ${balanced} %`);
+
+  await fillKey();
+  await page.getByLabel("Tag", { exact: true }).fill(TAG);
+  await preview().getByText("Tried with a key made").waitFor({ state: "hidden" });
+  await tried();
+  const subtle = await previewRms();
+  const count = await embeddings();
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await result().waitFor();
+  assert.equal(await embeddings(), count, "what was tried is done again");
+  assert.equal(await preview().isVisible(), false);
+  const { report } = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8"));
+  assert.equal(report.tag, TAG);
+  assert.ok(Math.abs(report.rmsRel * 100 - subtle) < 0.0005, `${report.rmsRel} and ${subtle} %`);
+
+  await page.getByLabel("Tag", { exact: true }).fill("OTHER");
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await result().locator("code", { hasText: "OTHER" }).first().waitFor();
+  assert.equal(await embeddings(), count + 1, "another tag needs another copy");
+
+  await page.getByLabel("Strength").selectOption("strong");
+  assert.equal(await result().count(), 0, "a copy of another strength is still offered");
+  await page.getByRole("tab", { name: "Check" }).click();
+  await page.waitForTimeout(1000);
+  assert.equal(await embeddings(), count + 1, "something is tried behind another view");
+});
+
+test("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
+  const { positions, indices } = torus();
+  const split = indices.flatMap((corner) => positions.slice(corner * 3, corner * 3 + 3));
+  const up = split.map((_, i) => Number(i % 3 === 1));
+  const whole = onDisk("whole.glb", glbOf({ positions, indices }));
+  const seams = onDisk("seams.glb", glbOf({ positions: split, indices: indices.map((_, i) => i), normals: up }));
+  const normals = () => view().getByRole("group", { name: "Normals" });
+  const look = async () => {
+    await page.waitForTimeout(500);
+    return canvas().screenshot();
+  };
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(whole);
+  const surface = await look();
+  await button("Raking light").press("Enter");
+  const raking = await look();
+  await picture("raking");
+  assert.notDeepEqual(raking, surface);
+  assert.equal(await normals().isVisible(), false, "this file has no normals");
+
+  await dropped(seams);
+  assert.equal(await normals().isVisible(), false, "it is not their turn");
+  await button("Raking light").press("Enter");
+  assert.equal(await normals().isVisible(), true);
+  assert.deepEqual(await look(), raking, "seams or the file's normals show");
+  await button("File’s own").press("Enter");
+  assert.notDeepEqual(await look(), raking);
+  await button("Surface").press("Enter");
+  assert.equal(await normals().isVisible(), false);
+});
+
+test("how many of the things that may have been done to a copy were tried is said while they are", async () => {
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  const said = await page.evaluateHandle(() => {
+    const texts = new Set();
+    const outcome = document.querySelector("#check [data-outcome]");
+    new MutationObserver(() => texts.add(outcome.textContent)).observe(outcome, { childList: true, subtree: true, characterData: true });
+    return texts;
+  });
+  await check();
+  const texts = await page.evaluate((texts) => [...texts], said);
+  assert.ok(texts.some((text) => /Looking for the mark … \d+ % tried/.test(text)), texts.join("\n"));
 });
 
 test("each carrier's part is told by its name, with what it survives, in both views", async () => {
@@ -375,10 +498,9 @@ test("the keyboard does all of it", async () => {
   await press("Tab", "Tab", "Enter");
   await facts().getByText("demo.glb").waitFor();
 
-  const canvas = view().getByRole("application");
-  await canvas.focus();
+  await canvas().focus();
   await page.waitForTimeout(500);
-  const look = () => canvas.screenshot();
+  const look = () => canvas().screenshot();
   const first = await look();
   await press("ArrowLeft", "ArrowUp", "+");
   await page.waitForTimeout(500);
@@ -426,6 +548,23 @@ for (const [name, options] of [
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(overflow <= 0, `${overflow} px too wide`);
   });
+}
+
+/** A torus with bumps, its triangles turned outwards. */
+function torus() {
+  const [around, across] = [48, 24];
+  const positions = [];
+  const indices = [];
+  for (let i = 0; i < around; i++) {
+    for (let j = 0; j < across; j++) {
+      const [u, v] = [(i / around) * 2 * Math.PI, (j / across) * 2 * Math.PI];
+      const radius = 0.4 + 0.02 * Math.sin(7 * u) * Math.cos(3 * v);
+      positions.push(...[Math.cos(u) * (1 + radius * Math.cos(v)), Math.sin(u) * (1 + radius * Math.cos(v)), radius * Math.sin(v)].map(Math.fround));
+      const corner = (a, b) => ((i + a) % around) * across + ((j + b) % across);
+      indices.push(corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 0), corner(1, 1), corner(0, 1));
+    }
+  }
+  return { positions, indices };
 }
 
 /** The same .glb with every node, mesh and material named so; the JSON chunk grows, the BIN chunk stays. */

@@ -39,31 +39,34 @@ export function glbFromObj(text) {
       }
     }
   }
-  const points = new Float32Array(positions);
-  const axis = (k) => points.filter((_, i) => i % 3 === k);
-  const bin = Buffer.concat([Buffer.from(points.buffer), Buffer.from(new Uint32Array(indices).buffer)]);
+  return glbOf({ positions, indices });
+}
+
+/** A .glb of one mesh: `x y z` of each vertex and, if wanted, of its normal, and three vertices a triangle. */
+export function glbOf({ positions, indices, normals = [] }) {
+  const axis = (k) => positions.filter((_, i) => i % 3 === k).map(Math.fround);
+  const vectors = (list) => ({ bytes: Buffer.from(new Float32Array(list).buffer), accessor: { componentType: 5126, type: "VEC3", count: list.length / 3 } });
+  const parts = [vectors(positions), { bytes: Buffer.from(new Uint32Array(indices).buffer), accessor: { componentType: 5125, type: "SCALAR", count: indices.length } }];
+  Object.assign(parts[0].accessor, {
+    min: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.min(a, b))),
+    max: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.max(a, b))),
+  });
+  const attributes = { POSITION: 0 };
+  if (normals.length > 0) {
+    attributes.NORMAL = parts.push(vectors(normals)) - 1;
+  }
+  const bin = Buffer.concat(parts.map(({ bytes }) => bytes));
+  let byteOffset = 0;
+  const bufferViews = parts.map(({ bytes: { byteLength } }) => ({ buffer: 0, byteOffset: (byteOffset += byteLength) - byteLength, byteLength }));
   return glb(
     {
       asset: { version: "2.0" },
       scene: 0,
       scenes: [{ nodes: [0] }],
       nodes: [{ mesh: 0 }],
-      meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-      accessors: [
-        {
-          bufferView: 0,
-          componentType: 5126,
-          type: "VEC3",
-          count: points.length / 3,
-          min: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.min(a, b))),
-          max: [0, 1, 2].map((k) => axis(k).reduce((a, b) => Math.max(a, b))),
-        },
-        { bufferView: 1, componentType: 5125, type: "SCALAR", count: indices.length },
-      ],
-      bufferViews: [
-        { buffer: 0, byteLength: points.byteLength },
-        { buffer: 0, byteOffset: points.byteLength, byteLength: indices.length * 4 },
-      ],
+      meshes: [{ primitives: [{ attributes, indices: 1 }] }],
+      accessors: parts.map(({ accessor }, bufferView) => ({ bufferView, ...accessor })),
+      bufferViews,
       buffers: [{ byteLength: bin.length }],
     },
     bin,

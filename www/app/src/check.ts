@@ -1,6 +1,5 @@
 /** Check: a suspect and a key in, one sentence out. */
 import type { Extraction } from "meshmark";
-import type { Client } from "meshmark/client";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keyMaker, type KeyMaker } from "./key-form";
@@ -11,12 +10,10 @@ import { saveJson } from "./save";
 import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
 import { View } from "./view";
-import { VERDICTS } from "./words";
+import { homes, VERDICTS } from "./words";
 
 export class Check extends View {
   readonly #expected = find<HTMLInputElement>("#expected");
-  /** The last measurement: it holds no key, so that another one can be tried at once. */
-  #measured: { model: Model; evidence: Uint8Array } | undefined;
 
   constructor(root: HTMLElement) {
     super(root, "Cannot check");
@@ -33,31 +30,11 @@ export class Check extends View {
     }
     const [expected, key] = [this.#expected.value || null, keyMaker()];
     await this.run(async (controller) => {
-      const reading = await runTask(this.outcome, controller, (progress) => this.#read(model, expected, key, progress));
+      const reading = await runTask(this.outcome, controller, (progress) => read(model, expected, key, progress));
       if (reading && model === this.model) {
         present(this.outcome, this.#card(model, expected, reading));
       }
     });
-  }
-
-  async #read(model: Model, expected: string | null, makeKey: KeyMaker, progress: Progress): Promise<Extraction> {
-    const client = await engine;
-    const evidence = await this.#measure(client, model, progress);
-    const key = await makeKey(client, progress);
-    progress.stage("test");
-    try {
-      return expected === null ? await client.extract(evidence, key, progress) : await client.verify(evidence, key, expected, progress);
-    } finally {
-      key.fill(0);
-    }
-  }
-
-  async #measure(client: Client, model: Model, progress: Progress): Promise<Uint8Array> {
-    if (this.#measured?.model !== model) {
-      progress.stage("read");
-      this.#measured = { model, evidence: await client.measure(model.bytes, model.buffers, progress) };
-    }
-    return this.#measured.evidence;
   }
 
   #card(model: Model, expected: string | null, reading: Extraction): HTMLElement {
@@ -72,11 +49,24 @@ export class Check extends View {
   }
 }
 
-function sentences({ verdict, reason, tag }: Extraction): string[] {
+async function read(model: Model, expected: string | null, makeKey: KeyMaker, progress: Progress): Promise<Extraction> {
+  const client = await engine;
+  const key = await makeKey(client, progress);
+  progress.stage("read");
+  try {
+    return await client.detect(model.bytes, model.buffers, key, expected ?? undefined, progress);
+  } finally {
+    key.fill(0);
+  }
+}
+
+function sentences(reading: Extraction): string[] {
+  const { verdict, reason, tag } = reading;
   const why = reason === null ? [] : [reason];
+  const where = homes(reading);
   switch (verdict) {
     case "found":
-      return tag === null ? why : [`This model carries the tag ${tag}, written with this key.`];
+      return [...(tag === null ? why : [`This model carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
     case "none":
       return ["This does not prove that the model is not yours.", ...why];
     default:

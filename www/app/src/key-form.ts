@@ -15,11 +15,15 @@ const state = find("#key-file-state");
 /** The key of the file that was chosen, or made here. */
 let fileKey: Uint8Array | undefined;
 
-/** Makes the form ready; it stands in no view yet. */
-export function startKeyForm(): void {
+/** Makes the form ready; it stands in no view yet. `onChange` hears of every other key that it comes to name. */
+export function startKeyForm(onChange: () => void): void {
   root.addEventListener("change", showSource);
-  keyFile.addEventListener("change", readKeyFile);
-  find("#make-key-file").addEventListener("click", makeKeyFile);
+  root.addEventListener("input", onChange);
+  keyFile.addEventListener("change", () => void readKeyFile().then(onChange));
+  find("#make-key-file").addEventListener("click", () => {
+    makeKeyFile();
+    onChange();
+  });
   owner.addEventListener("input", () => setProblem(owner, null));
   passphrase.addEventListener("input", () => setProblem(passphrase, null));
   const show = find("#show-passphrase");
@@ -36,6 +40,11 @@ export function placeKeyForm(view: Element): void {
   find("[data-key-slot]", view).append(root);
 }
 
+/** Whether there is all that a key is made from. */
+export function isKeyComplete(): boolean {
+  return source() === "file" ? fileKey !== undefined : owner.value.trim() !== "" && passphrase.value !== "";
+}
+
 /** The first field that is not filled in as it should be, told so; `null` where all are. */
 export function incompleteKeyField(): HTMLElement | null {
   if (source() === "file") {
@@ -49,6 +58,9 @@ export function incompleteKeyField(): HTMLElement | null {
 
 /** Makes the key's 32 bytes, the caller's to overwrite after use. */
 export type KeyMaker = (client: Client, progress: Progress) => Promise<Uint8Array>;
+
+/** Makes a key that nobody will have again. */
+export const strangerKey: KeyMaker = async () => crypto.getRandomValues(new Uint8Array(KEY_BYTES));
 
 /** Makes the key of what the fields say now, whatever they say later. */
 export function keyMaker(): KeyMaker {

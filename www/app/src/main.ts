@@ -19,8 +19,11 @@ const protect = new Protect(find("#protect"), (marked) => {
   void check.take(marked);
 });
 
-startKeyForm();
-const select = startTabs([protectTab, checkTab], placeKeyForm);
+startKeyForm(() => protect.onOtherMark());
+const select = startTabs([protectTab, checkTab], (panel) => {
+  placeKeyForm(panel);
+  protect.onShown(panel === protect.root);
+});
 select(protectTab);
 
 onDrop((files) => void (check.root.hidden ? protect : check).takeFiles(files));

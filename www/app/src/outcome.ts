@@ -1,7 +1,7 @@
 /** Results in words first, then numbers, then details. */
-import type { CarrierReading, Extraction, Verdict } from "meshmark";
+import type { CarrierReading, EmbedReport, Extraction, Forecast, Verdict } from "meshmark";
 import { announce, h } from "./dom";
-import { CARRIERS, count, odds, problem } from "./words";
+import { attackWords, CARRIERS, count, LEVELS, odds, percent, problem, significant } from "./words";
 
 /** A result card: a headline, sentences, and whatever follows. */
 export function card(verdict: Verdict | "error", headline: string | Node[], sentences: string[], ...rest: Node[]): HTMLElement {
@@ -51,6 +51,30 @@ export function readingRows(reading: Extraction): [string, Node | string][] {
     ["Chance of this without the key", chance(reading.lnP)],
     ["Agreement", `${Math.round(reading.agreement * 100)} %`],
   ];
+}
+
+/** How far vertices move, as rows of `numbers`. */
+export function displacementRows({ rmsRel, maxRel, diagonal }: EmbedReport): [string, string][] {
+  const both = (rel: number) => `${percent(rel)} of the diagonal (${significant(rel * diagonal)} units)`;
+  return [
+    ["Displacement, RMS", both(rmsRel)],
+    ["Displacement, largest", both(maxRel)],
+  ];
+}
+
+/** What was tried on the marked copy, one a row, and what came of it: in words and by a sign, never by colour alone. */
+export function forecastList(forecast: Forecast[]): HTMLElement {
+  const row = ({ attack, level }: Forecast) => {
+    const words = attackWords(attack);
+    return h("li", { "data-level": level }, h("span", {}, words.charAt(0).toUpperCase() + words.slice(1)), h("span", { class: "level" }, LEVELS[level]));
+  };
+  return h(
+    "section",
+    { class: "forecast", "aria-label": "What the mark survives" },
+    h("h3", {}, "What the mark survives"),
+    h("p", { class: "hint" }, "Each change was made to the marked copy, and the mark looked for in what was left. “Barely” may fail next time."),
+    h("ul", {}, ...forecast.map(row)),
+  );
 }
 
 /** The carriers, one a row, and what each survives. */

@@ -2,15 +2,17 @@
 import type { Carrier, EmbedOptions, Embedding, EmbedReport, Inspection, Strength } from "meshmark";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
-import { incompleteKeyField, keyMaker, type KeyMaker } from "./key-form";
+import { incompleteKeyField, isKeyComplete, keyMaker, strangerKey, type KeyMaker } from "./key-form";
 import { isGltf, renamed, type Model } from "./model";
-import { actions, card, carrierTable, details, note, numbers, present, readingRows } from "./outcome";
+import { actions, card, carrierTable, details, displacementRows, forecastList, note, numbers, present, readingRows } from "./outcome";
+import { Preview } from "./preview";
 import { embedReport } from "./report";
 import { save, saveJson } from "./save";
 import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
+import { Trial } from "./trial";
 import { View } from "./view";
-import { CARRIERS, count, percent, significant } from "./words";
+import { CARRIERS, count, losses, significant } from "./words";
 
 type Preset = Extract<Strength, string>;
 
@@ -20,10 +22,22 @@ const STRENGTHS: Record<Preset, string> = {
   strong: "Survives more; look at smooth, shiny surfaces first. At most 0.08 % of the model’s diagonal.",
 };
 
+/** How long a person must have rested, in milliseconds, before what they chose is tried. */
+const REST = 500;
+
+/** The tag that is tried before there is one. */
+const STAND_IN_TAG = "PREVIEW";
+
 export class Protect extends View {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
   readonly #carriers = [...find("#carriers").querySelectorAll("input")];
+  readonly #preview = new Preview();
+  /** The embedding that the form asks for now, or one like it by another key. */
+  #trial: Trial | undefined;
+  #timer = 0;
+  /** While the finished copy of this model stands there, nothing is tried. */
+  #isMarked = false;
 
   /** @param onCheck is given the marked copy, to check it as anybody would */
   constructor(
@@ -34,17 +48,24 @@ export class Protect extends View {
     watchTag(this.#tag);
     const hint = find("#strength-hint");
     const describe = () => (hint.textContent = STRENGTHS[this.#strength.value as Preset]);
-    this.#strength.addEventListener("change", describe);
+    this.#strength.addEventListener("change", () => {
+      describe();
+      this.#onOtherLook();
+    });
     describe();
+    this.#tag.addEventListener("input", () => this.onOtherMark());
     for (const box of this.#carriers) {
       find(`#${box.id}-hint`).textContent = CARRIERS[box.value as Carrier].survives;
-      box.addEventListener("change", () => this.#keepOne());
+      box.addEventListener("change", () => {
+        this.#keepOne();
+        this.#onOtherLook();
+      });
     }
     this.#keepOne(); // a reload may bring back what was chosen before
   }
 
   protected override foresee({ capacity }: Inspection): HTMLElement | null {
-    const short = capacity.filter(({ addresses, neededAddresses }) => addresses < neededAddresses);
+    const short = capacity.filter(isShort);
     const lacking = short
       .map(({ name, addresses, neededAddresses }) => `its ${CARRIERS[name].home} offers ${count(addresses)} of the ${count(neededAddresses)} places that are needed`)
       .join(", ");
@@ -71,6 +92,103 @@ export class Protect extends View {
     return this.#carriers.filter((box) => box.checked);
   }
 
+  override async take(model: Model): Promise<void> {
+    this.#forget();
+    await super.take(model);
+    if (model === this.model) {
+      this.#tryLater();
+    }
+  }
+
+  protected override close(): void {
+    this.#forget();
+    super.close();
+  }
+
+  /** While another view is in front, nothing is tried: it may need the engine. */
+  onShown(isShown: boolean): void {
+    clearTimeout(this.#timer);
+    if (!isShown) {
+      this.#dropTrial();
+    } else if (!this.#isMarked) {
+      this.#tryLater();
+    }
+  }
+
+  /** Another key or tag: what was made for the one before must not be handed out. */
+  onOtherMark(): void {
+    if (this.#trial?.isExact) {
+      this.#dropTrial();
+    }
+    if (!this.#isMarked) {
+      this.#tryLater();
+    }
+  }
+
+  /** Another strength or other carriers: the copy that stands there is not of these. */
+  #onOtherLook(): void {
+    this.#dropTrial();
+    if (this.#isMarked) {
+      this.#isMarked = false;
+      this.outcome.replaceChildren();
+    }
+    this.#tryLater();
+  }
+
+  #forget(): void {
+    clearTimeout(this.#timer);
+    this.#dropTrial();
+    this.#preview.hide();
+    this.#isMarked = false;
+  }
+
+  #dropTrial(): void {
+    this.#trial?.abort();
+    this.#trial = undefined;
+  }
+
+  #tryLater(): void {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => void this.#try(), REST);
+  }
+
+  /** Shows what would come of the form as it is; until the key and the tag are there, by others. */
+  async #try(): Promise<void> {
+    const { model } = this;
+    const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
+    if (!model || !this.#isPromising() || this.root.hidden || this.isRunning || (this.#trial && !isExact)) {
+      return;
+    }
+    const trial = this.#start(model, isExact);
+    try {
+      const embedding = await trial.embedding;
+      if (trial === this.#trial && !this.isRunning) {
+        this.#preview.show(embedding.report, isExact);
+        await this.stage.showMarked(markedCopy(model, embedding), embedding.report);
+      }
+    } catch (error) {
+      if (trial === this.#trial && !this.isRunning) {
+        this.#preview.fail(error);
+        this.stage.dropMarked();
+      }
+    }
+  }
+
+  /** Whether some carrier may hold a mark; where none can, that has been said already. */
+  #isPromising(): boolean {
+    return this.inspection !== undefined && !this.inspection.capacity.every(isShort);
+  }
+
+  #start(model: Model, isExact: boolean): Trial {
+    this.#dropTrial();
+    const options: EmbedOptions = {
+      strength: this.#strength.value as Preset,
+      carriers: this.#chosenBoxes().map((box) => box.value as Carrier),
+    };
+    const [tag, key] = isExact ? [this.#tag.value, keyMaker()] : [STAND_IN_TAG, strangerKey];
+    return (this.#trial = new Trial(isExact, (progress) => embed(model, tag, key, options, progress), this.#preview.listener));
+  }
+
   protected async submit(): Promise<void> {
     const keyField = incompleteKeyField();
     const problem = this.#tag.value ? tagProblem(this.#tag.value) : "Give the tag that a check shall read back.";
@@ -79,46 +197,45 @@ export class Protect extends View {
     if (!model) {
       return;
     }
-    const options: EmbedOptions = {
-      strength: this.#strength.value as Preset,
-      carriers: this.#chosenBoxes().map((box) => box.value as Carrier),
-    };
-    const [tag, key] = [this.#tag.value, keyMaker()];
     await this.run(async (controller) => {
-      const embedding = await runTask(this.outcome, controller, (progress) => embed(model, tag, key, options, progress));
+      clearTimeout(this.#timer);
+      this.#preview.hide();
+      const trial = this.#trial?.isExact ? this.#trial : this.#start(model, true);
+      const embedding = await runTask(this.outcome, controller, (progress) => trial.follow(progress));
       if (embedding && model === this.model) {
+        this.#isMarked = true;
         await this.#present(model, embedding);
+      } else if (trial === this.#trial) {
+        this.#dropTrial();
       }
     });
   }
 
-  async #present(model: Model, { model: bytes, files, report }: Embedding): Promise<void> {
-    const marked: Model = {
-      name: renamed(model.name, isGltf(model) ? "marked.gltf" : "marked.glb"),
-      bytes: bytes as Model["bytes"],
-      buffers: { ...model.buffers, ...files },
-      images: model.images,
-    };
+  async #present(model: Model, embedding: Embedding): Promise<void> {
+    const { files, report } = embedding;
+    const marked = markedCopy(model, embedding);
     present(this.outcome, this.#card(model, marked, Object.entries(files), report));
-    await this.stage.showMarked(marked, report);
+    await this.stage.showMarked(marked, report, { version: "after" });
   }
 
   #card(model: Model, marked: Model, files: [name: string, bytes: Uint8Array][], report: EmbedReport): HTMLElement {
     const { readBack } = report;
     const holds = readBack.verdict === "found";
+    const lost = holds ? losses(report.forecast) : null;
     const download = button(`Download ${marked.name}`, () => save(marked.name, marked.bytes, isGltf(marked) ? "model/gltf+json" : "model/gltf-binary"), "primary");
     const downloads = files.map(([name, bytes]) => button(`Download ${name}`, () => save(name.slice(name.lastIndexOf("/") + 1), bytes as BlobPart), "primary"));
     return card(
       readBack.verdict,
       holds ? "Your mark is in the copy" : "The mark does not hold in this model",
       [holds ? "It was read back from the finished file. Keep the original to yourself." : (readBack.reason ?? readBack.sentence)],
+      ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost)]),
       actions(download, ...downloads),
       ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
+      forecastList(report.forecast),
       numbers([
         ...readingRows(readBack),
         ["Held by", holders(report)],
-        ["Displacement, RMS", displacement(report.rmsRel, report.diagonal)],
-        ["Displacement, largest", displacement(report.maxRel, report.diagonal)],
+        ...displacementRows(report),
         ["Vertices moved", `${count(report.movedVertices)} of ${count(report.vertices)}`],
       ]),
       details(
@@ -139,6 +256,20 @@ export class Protect extends View {
   }
 }
 
+function isShort({ addresses, neededAddresses }: Inspection["capacity"][number]): boolean {
+  return addresses < neededAddresses;
+}
+
+/** The copy as a model of its own, beside the files of the original that did not change. */
+function markedCopy(host: Model, { model, files }: Embedding): Model {
+  return {
+    name: renamed(host.name, isGltf(host) ? "marked.gltf" : "marked.glb"),
+    bytes: model as Model["bytes"],
+    buffers: { ...host.buffers, ...files },
+    images: host.images,
+  };
+}
+
 async function embed(model: Model, tag: string, makeKey: KeyMaker, options: EmbedOptions, progress: Progress): Promise<Embedding> {
   const client = await engine;
   const key = await makeKey(client, progress);
@@ -154,9 +285,4 @@ async function embed(model: Model, tag: string, makeKey: KeyMaker, options: Embe
 function holders({ number, readBack }: EmbedReport): string {
   const holding = readBack.carriers.filter((carrier) => carrier.number === number);
   return holding.map(({ name }) => CARRIERS[name].name).join(", ");
-}
-
-/** In the model's own units, and as a fraction of its size. */
-function displacement(rel: number, diagonal: number): string {
-  return `${percent(rel)} of the diagonal (${significant(rel * diagonal)} units)`;
 }

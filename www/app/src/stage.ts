@@ -3,7 +3,7 @@ import type { EmbedReport, Inspection } from "meshmark";
 import { find, h, instantiate } from "./dom";
 import type { Model, NamedFile } from "./model";
 import { drawLegend } from "./viewer/colormap";
-import type { Version, Viewer } from "./viewer/viewer";
+import type { Look, Viewer } from "./viewer/viewer";
 import { bytes, count, percent, significant } from "./words";
 
 export interface StageEvents {
@@ -12,11 +12,14 @@ export interface StageEvents {
   onClose(): void;
 }
 
+/** What is chosen by one of several buttons, each of which names its choice in the attribute `data-` and this. */
+const SEGMENTS = ["version", "shading", "normals"] as const;
+
 export class Stage {
   readonly #root: HTMLElement;
   readonly #intake: HTMLElement;
   readonly #viewing = h("div", { class: "viewing", hidden: "" });
-  readonly #facts = h("p", { class: "facts" });
+  readonly #facts: HTMLElement;
   readonly #canvas: HTMLCanvasElement;
   #viewer: Viewer | undefined;
   /** Counts the models shown: a slow one that has been replaced must not appear. */
@@ -26,7 +29,8 @@ export class Stage {
     this.#root = find("[data-stage]", view);
     this.#intake = find("[data-intake]", view);
     this.#intake.append(instantiate("#intake-actions"));
-    this.#viewing.append(this.#facts, instantiate("#viewer"));
+    this.#viewing.append(instantiate("#viewer"));
+    this.#facts = find(".facts", this.#viewing);
     this.#root.append(this.#viewing);
     this.#canvas = find<HTMLCanvasElement>(".viewer > canvas", this.#viewing);
     drawLegend(find<HTMLCanvasElement>(".legend canvas", this.#viewing));
@@ -40,32 +44,40 @@ export class Stage {
     this.#facts.replaceChildren(h("strong", {}, model.name), h("span", {}, inspection ? factsOf(inspection) : bytes(model.bytes.length)));
     this.#intake.hidden = true;
     this.#viewing.hidden = false;
-    this.#setVersions(false);
-    this.#press("wireframe", false);
+    this.#offer({ marked: false, normals: false });
+    this.#pressAll({ version: "before", shading: "surface", normals: "geometry", wireframe: false });
     await this.#preview(turn, async () => {
       const { loadScene, viewer } = await this.#loadViewer();
       viewer.clear();
       const scene = await loadScene(model);
       if (turn === this.#turn) {
         viewer.showBefore(scene);
+        this.#offer({ marked: false, normals: viewer.hasNormals });
       }
     });
   }
 
-  /** Adds the marked copy of the model that is shown. */
-  async showMarked(model: Model, report: EmbedReport): Promise<void> {
+  /** Adds a marked copy of the model that is shown, in place of any other; looked at in the same way, unless `change` says how. */
+  async showMarked(model: Model, report: EmbedReport, change: Partial<Look> = {}): Promise<void> {
     const turn = this.#turn;
     await this.#preview(turn, async () => {
       const { loadScene, viewer } = await this.#loadViewer();
       const scene = await loadScene(model);
       if (turn === this.#turn) {
-        viewer.dropAfter();
         const max = viewer.showAfter(scene);
         this.#setLegend(max, report.diagonal);
-        this.#setVersions(true);
-        this.#pressVersion("after");
+        this.#offer({ marked: true, normals: viewer.hasNormals });
+        this.#pressAll(change);
       }
     });
+  }
+
+  /** Takes the marked copy away again. */
+  dropMarked(): void {
+    this.#turn++;
+    this.#viewer?.dropAfter();
+    this.#offer({ marked: false, normals: this.#viewer?.hasNormals ?? false });
+    this.#pressAll({ version: "before", shading: "surface" });
   }
 
   close(): void {
@@ -86,7 +98,7 @@ export class Stage {
       none.hidden = turn !== this.#turn;
     }
     this.#canvas.hidden = !none.hidden;
-    for (const button of this.#viewing.querySelectorAll<HTMLButtonElement>(".toolbar button:not(.last)")) {
+    for (const button of this.#viewing.querySelectorAll<HTMLButtonElement>(".toolbar button")) {
       button.disabled = !none.hidden;
     }
   }
@@ -114,12 +126,13 @@ export class Stage {
   }
 
   #startTools(events: StageEvents): void {
-    for (const name of ["heat", "wireframe"] as const) {
-      this.#tool(name).addEventListener("click", () => this.#press(name, this.#tool(name).getAttribute("aria-pressed") !== "true"));
+    for (const kind of SEGMENTS) {
+      for (const button of this.#segments(kind)) {
+        button.addEventListener("click", () => this.#pressAll({ [kind]: button.dataset[kind] }));
+      }
     }
-    for (const version of ["before", "after"] as const) {
-      find(`[data-version="${version}"]`, this.#viewing).addEventListener("click", () => this.#pressVersion(version));
-    }
+    const wireframe = this.#tool("wireframe");
+    wireframe.addEventListener("click", () => this.#pressAll({ wireframe: wireframe.getAttribute("aria-pressed") !== "true" }));
     this.#tool("fit").addEventListener("click", () => this.#viewer?.fit());
     this.#tool("reset").addEventListener("click", () => this.#viewer?.reset());
     this.#tool("close").addEventListener("click", () => events.onClose());
@@ -129,31 +142,40 @@ export class Stage {
     return find(`[data-tool="${name}"]`, this.#viewing);
   }
 
-  #press(name: "heat" | "wireframe", on: boolean): void {
-    this.#tool(name).setAttribute("aria-pressed", String(on));
-    this.#viewer?.look({ [name]: on });
-    if (name === "heat") {
-      find(".legend", this.#viewing).hidden = !on;
-    }
+  #segments(kind: (typeof SEGMENTS)[number]): HTMLElement[] {
+    return [...this.#viewing.querySelectorAll<HTMLElement>(`[data-${kind}]`)];
   }
 
-  #pressVersion(version: Version): void {
-    for (const button of this.#viewing.querySelectorAll<HTMLElement>("[data-version]")) {
-      button.setAttribute("aria-pressed", String(button.dataset["version"] === version));
+  /** Presses the buttons that stand for a look, and looks at the model so. */
+  #pressAll(change: Partial<Look>): void {
+    for (const kind of SEGMENTS.filter((name) => change[name] !== undefined)) {
+      for (const button of this.#segments(kind)) {
+        button.setAttribute("aria-pressed", String(button.dataset[kind] === change[kind]));
+      }
     }
-    this.#viewer?.look({ version });
+    if (change.wireframe !== undefined) {
+      this.#tool("wireframe").setAttribute("aria-pressed", String(change.wireframe));
+    }
+    if (change.shading !== undefined) {
+      find(".legend", this.#viewing).hidden = change.shading !== "heat";
+      this.#tool("normals").dataset["shading"] = change.shading;
+    }
+    this.#viewer?.look(change);
   }
 
-  #setVersions(both: boolean): void {
-    this.#press("heat", false);
-    this.#tool("versions").hidden = this.#tool("heat").hidden = !both;
+  /** Shows the tools for what there is to see: a marked copy, and normals of the file's own. */
+  #offer({ marked, normals }: { marked: boolean; normals: boolean }): void {
+    this.#tool("versions").hidden = find('[data-shading="heat"]', this.#viewing).hidden = !marked;
+    this.#tool("normals").hidden = !normals;
   }
 
   #setLegend(max: number, diagonal: number): void {
-    const legend = find(".legend", this.#viewing);
-    find('[data-legend="title"]', legend).textContent = "Displacement";
-    find('[data-legend="low"]', legend).textContent = "0";
-    find('[data-legend="high"]', legend).textContent = `${significant(max)} units = ${percent(max / diagonal)} of the diagonal`;
+    const scale = (name: string, value: (of: number) => string) => {
+      const marks = [0, max / 2, max].map((of) => h("span", {}, value(of)));
+      find(`[data-legend="${name}"]`, this.#viewing).replaceChildren(...marks);
+    };
+    scale("units", (of) => (of === 0 ? "0" : `${significant(of)} units`));
+    scale("percent", (of) => (of === 0 ? "0" : percent(of / diagonal)));
   }
 }
 

@@ -36,6 +36,9 @@ export async function runTask<T>(
   };
   const onProgress: OnProgress = (name, fraction) => {
     stage(name);
+    if (name === "test") {
+      words.textContent = `${STAGES.test} … ${Math.round(fraction * 100)} % tried`; // one after another: what may have been done to the model
+    }
     bar.value = fraction;
   };
   try {

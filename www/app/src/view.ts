@@ -89,6 +89,11 @@ export abstract class View {
     this.stage.close();
   }
 
+  /** Whether a person waits for something. */
+  protected get isRunning(): boolean {
+    return this.#running !== undefined;
+  }
+
   /** Does one thing at a time: while it goes on, the form's button rests, and another model ends it. */
   protected async run(work: (controller: AbortController) => Promise<void>): Promise<void> {
     if (this.#running) {

@@ -1,5 +1,5 @@
 /** Numbers and outcomes in words. */
-import type { Carrier, Stage, Verdict } from "meshmark";
+import type { Carrier, Extraction, Forecast, Stage, Verdict } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
 
 export const VERDICTS: Record<Verdict, string> = {
@@ -14,6 +14,35 @@ export const CARRIERS: Record<Carrier, { name: string; home: string; survives: s
   solid: { name: "Shape (SOLID)", home: "shape", survives: "Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
   ring: { name: "Connectivity (RING)", home: "connectivity", survives: "Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
 };
+
+/** What is tried on a marked model, to follow "It survives". */
+const ATTACKS: Record<string, string> = {
+  none: "no change at all",
+  noise: "noise of 0.1 % of the diagonal",
+  quantize: "rounding to 11 bits",
+  smooth: "10 steps of smoothing",
+  "simplify-30": "removing 30 % of its vertices",
+  "simplify-70": "removing 70 % of its vertices",
+  crop: "cutting 30 % of it away",
+};
+
+export const LEVELS: Record<Forecast["level"], string> = { green: "Survives", amber: "Barely", red: "Lost" };
+
+export function attackWords(attack: string): string {
+  return ATTACKS[attack] ?? attack;
+}
+
+/** What the mark does not survive, in one sentence; `null` where it survives all that was tried. */
+export function losses(forecast: Forecast[]): string | null {
+  const lost = forecast.filter(({ level }) => level === "red").map(({ attack }) => attackWords(attack));
+  return lost.length === 0 ? null : `It will not survive ${new Intl.ListFormat("en", { type: "disjunction" }).format(lost)}.`;
+}
+
+/** Where a payload was read: "the shape", "the connectivity", or both; `null` where none was. */
+export function homes({ number, carriers }: Extraction): string | null {
+  const spoke = carriers.filter((carrier) => number !== null && carrier.number === number).map(({ name }) => `the ${CARRIERS[name].home}`);
+  return spoke.length === 0 ? null : new Intl.ListFormat("en").format(spoke);
+}
 
 export const STAGES: Record<Stage | "key", string> = {
   key: "Making your key from the passphrase",

@@ -1,14 +1,26 @@
 /** One version of a model in the scene, with the ways it can be shown. */
-import { Box3, BufferGeometry, Mesh, MeshBasicMaterial, Sphere, Texture, Vector3, type Material, type Object3D } from "three";
+import { Box3, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, MeshStandardMaterial, Sphere, Texture, Vector3, type BufferAttribute, type Material, type Object3D } from "three";
 import type { Heat } from "./heat";
+import { smoothNormals } from "./normals";
 
-const HEAT = new MeshBasicMaterial({ vertexColors: true, toneMapped: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+/** `surface`: the file's materials. `raking`: clay under a low light. `heat`: how far each vertex moved. */
+export type Shading = "surface" | "raking" | "heat";
+
+/** Which normals the clay is shaded with: those that the geometry has, or those that the file says it has. */
+export type Normals = "geometry" | "file";
+
+const BEHIND_WIRES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }; // so that edges drawn on a surface are whole
+const HEAT = new MeshBasicMaterial({ vertexColors: true, toneMapped: false, ...BEHIND_WIRES });
+const CLAY = new MeshStandardMaterial({ color: 0xb9b4aa, roughness: 1, side: DoubleSide, ...BEHIND_WIRES });
 const WIRES = new MeshBasicMaterial({ wireframe: true, color: 0x70787f, transparent: true, opacity: 0.3, toneMapped: false });
 
 export class Layer {
   readonly meshes: Mesh[] = [];
+  /** Whether every mesh comes with normals of its own. */
+  readonly hasNormals: boolean;
   readonly #surfaces: { geometry: BufferGeometry; material: Material | Material[] }[];
   #hot: BufferGeometry[] | undefined;
+  #smooth: BufferGeometry[] | undefined;
   readonly #wires: Mesh[];
 
   constructor(readonly root: Object3D) {
@@ -18,14 +30,16 @@ export class Layer {
         this.meshes.push(object);
       }
     });
+    this.hasNormals = this.meshes.every(({ geometry }) => geometry.hasAttribute("normal"));
     this.#surfaces = this.meshes.map(({ geometry, material }) => ({ geometry, material }));
-    this.#surfaces.flatMap(({ material }) => material).forEach(behindWires);
+    this.#surfaces.flatMap(({ material }) => material).forEach((material) => Object.assign(material, BEHIND_WIRES));
     this.#wires = this.meshes.map(wiresOf);
   }
 
   /** Makes the heat map showable. */
   heat(heat: Heat): void {
-    this.#hot = this.#surfaces.map(({ geometry }, i) => withColors(geometry, heat.colors[i]!));
+    this.#hot?.forEach((geometry) => geometry.dispose());
+    this.#hot = this.#with("color", heat.colors);
   }
 
   /** A tight sphere about the model as it stands, centred in its box. */
@@ -44,29 +58,54 @@ export class Layer {
     return new Sphere(sphere.center, radius);
   }
 
-  show(options: { visible: boolean; wireframe: boolean; heat: boolean }): void {
-    this.root.visible = options.visible;
-    this.#wires.forEach((wires) => (wires.visible = options.wireframe));
-    this.meshes.forEach((mesh, i) => {
-      const hot = options.heat ? this.#hot?.[i] : undefined;
-      mesh.geometry = hot ?? this.#surfaces[i]!.geometry;
-      mesh.material = hot ? HEAT : this.#surfaces[i]!.material;
+  show(look: { visible: boolean; wireframe: boolean; shading: Shading; normals: Normals }): void {
+    this.root.visible = look.visible;
+    this.#wires.forEach((wires) => (wires.visible = look.wireframe));
+    if (look.visible) {
+      const { geometries, material } = this.#shaded(look.shading, look.normals);
+      this.meshes.forEach((mesh, i) => {
+        const own = this.#surfaces[i]!;
+        mesh.geometry = geometries?.[i] ?? own.geometry;
+        mesh.material = material ?? own.material;
+      });
+    }
+  }
+
+  /** What takes the place of the meshes' own geometries and materials, if anything does. */
+  #shaded(shading: Shading, normals: Normals): { geometries?: BufferGeometry[]; material?: Material } {
+    if (shading === "heat" && this.#hot) {
+      return { geometries: this.#hot, material: HEAT };
+    }
+    if (shading === "raking" && normals === "geometry") {
+      this.#smooth ??= this.#with("normal", smoothNormals(this.meshes));
+      return { geometries: this.#smooth, material: CLAY };
+    }
+    return shading === "raking" ? { material: CLAY } : {};
+  }
+
+  /** The meshes' geometries with one attribute in place of their own, the other arrays shared. */
+  #with(name: "color" | "normal", attributes: BufferAttribute[]): BufferGeometry[] {
+    return this.#surfaces.map(({ geometry }, i) => {
+      const changed = new BufferGeometry();
+      changed.setIndex(geometry.index);
+      changed.attributes = { ...geometry.attributes, [name]: attributes[i]! };
+      changed.morphAttributes = geometry.morphAttributes;
+      changed.morphTargetsRelative = geometry.morphTargetsRelative;
+      changed.groups = geometry.groups;
+      return changed;
     });
   }
 
   dispose(): void {
     this.root.removeFromParent();
-    this.#hot?.forEach((geometry) => geometry.dispose());
+    for (const geometry of [...(this.#hot ?? []), ...(this.#smooth ?? [])]) {
+      geometry.dispose();
+    }
     for (const { geometry, material } of this.#surfaces) {
       geometry.dispose();
       [material].flat().forEach(disposeMaterial);
     }
   }
-}
-
-/** Pushes a surface back a little, so that the edges drawn on it are whole. */
-function behindWires(material: Material): void {
-  Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
 }
 
 /** The mesh's edges, moving with it: skins and instances are cloned with what they hang on. */
@@ -76,17 +115,6 @@ function wiresOf(mesh: Mesh): Mesh {
   wires.visible = false;
   mesh.parent!.add(wires);
   return wires;
-}
-
-/** The same geometry with other vertex colours, its arrays shared. */
-function withColors(geometry: BufferGeometry, colors: Heat["colors"][number]): BufferGeometry {
-  const hot = new BufferGeometry();
-  hot.setIndex(geometry.index);
-  hot.attributes = { ...geometry.attributes, color: colors };
-  hot.morphAttributes = geometry.morphAttributes;
-  hot.morphTargetsRelative = geometry.morphTargetsRelative;
-  hot.groups = geometry.groups;
-  return hot;
 }
 
 function disposeMaterial(material: Material): void {

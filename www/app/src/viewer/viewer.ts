@@ -1,4 +1,4 @@
-/** A model on a canvas: orbit, before and after, edges, heat map. Draws only when something has changed. */
+/** A model on a canvas: orbit, before and after, edges, raking light, heat map. Draws only when something has changed. */
 import {
   DirectionalLight,
   NeutralToneMapping,
@@ -14,9 +14,22 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 import { heatOf } from "./heat";
-import { Layer } from "./layer";
+import { Layer, type Normals, type Shading } from "./layer";
 
 export type Version = "before" | "after";
+
+export interface Look {
+  version: Version;
+  wireframe: boolean;
+  shading: Shading;
+  normals: Normals;
+}
+
+const FIRST_LOOK: Look = { version: "before", wireframe: false, shading: "surface", normals: "geometry" };
+
+/** Lights go with the eye: from over the left shoulder; or from far left, low over what faces the eye, where bumps throw shade. */
+const SOFT = { from: new Vector3(-1, 1.2, 1), intensity: 1.6, surroundings: 0.45 };
+const RAKING = { from: new Vector3(-1, 0.35, 0.15), intensity: 4.2, surroundings: 0.1 };
 
 const FIELD_OF_VIEW = 32;
 const FIRST_DIRECTION = new Vector3(0.55, 0.35, 1).normalize();
@@ -27,10 +40,11 @@ export class Viewer {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW);
+  readonly #light = new DirectionalLight();
   readonly #controls: OrbitControls;
   readonly #layers: Partial<Record<Version, Layer>> = {};
   readonly #bounds = new Sphere();
-  #look = { version: "before" as Version, wireframe: false, heat: false };
+  #look = FIRST_LOOK;
   #frame = 0;
 
   /** @throws where the browser has no WebGL 2 */
@@ -41,16 +55,14 @@ export class Viewer {
     const pmrem = new PMREMGenerator(this.#renderer);
     this.#scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
     pmrem.dispose();
-    this.#scene.environmentIntensity = 0.45;
-    const key = new DirectionalLight(0xffffff, 1.6); // from over the viewer's left shoulder, wherever they look from
-    key.position.set(-1, 1.2, 1);
-    this.#scene.add(this.#camera.add(key, key.target));
+    this.#scene.add(this.#camera.add(this.#light, this.#light.target));
 
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.#controls.addEventListener("change", () => this.#draw());
     canvas.addEventListener("keydown", (event) => this.#key(event));
     canvas.addEventListener("webglcontextrestored", () => this.#draw());
+    this.look({});
     new ResizeObserver(() => this.#resize(canvas.clientWidth, canvas.clientHeight)).observe(canvas);
   }
 
@@ -62,14 +74,18 @@ export class Viewer {
     this.reset();
   }
 
-  /** Adds the marked version of the model that is shown, with the heat map; returns the largest displacement in scene units. */
+  /**
+   * Adds the marked version of the model that is shown, in place of any other, with the heat map; returns the largest
+   * displacement in scene units.
+   */
   showAfter(root: Object3D): number {
+    this.#layers.after?.dispose();
     const before = this.#layers.before!;
     const after = this.#add("after", root);
     const heat = heatOf(before.meshes, after.meshes);
     before.heat(heat);
     after.heat(heat);
-    this.look({ version: "after" });
+    this.look({});
     return heat.max;
   }
 
@@ -77,11 +93,20 @@ export class Viewer {
   dropAfter(): void {
     this.#layers.after?.dispose();
     delete this.#layers.after;
-    this.look({ version: "before", heat: false });
+    this.look({ version: "before" });
   }
 
-  look(change: Partial<{ version: Version; wireframe: boolean; heat: boolean }>): void {
+  /** Whether the model comes with normals of its own, beside which recomputed ones can be seen. */
+  get hasNormals(): boolean {
+    return this.#layers.before?.hasNormals ?? false;
+  }
+
+  look(change: Partial<Look>): void {
     this.#look = { ...this.#look, ...change };
+    const { from, intensity, surroundings } = this.#look.shading === "raking" ? RAKING : SOFT;
+    this.#light.position.copy(from);
+    this.#light.intensity = intensity;
+    this.#scene.environmentIntensity = surroundings;
     for (const version of ["before", "after"] as const) {
       this.#layers[version]?.show({ ...this.#look, visible: version === this.#look.version });
     }
@@ -103,8 +128,7 @@ export class Viewer {
     this.#layers.after?.dispose();
     delete this.#layers.before;
     delete this.#layers.after;
-    this.#look = { version: "before", wireframe: false, heat: false };
-    this.#draw();
+    this.look(FIRST_LOOK);
   }
 
   #add(version: Version, root: Object3D): Layer {

@@ -11,7 +11,9 @@ export type Normals = "geometry" | "file";
 
 const BEHIND_WIRES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }; // so that edges drawn on a surface are whole
 const HEAT = new MeshBasicMaterial({ vertexColors: true, toneMapped: false, ...BEHIND_WIRES });
-const CLAY = new MeshStandardMaterial({ color: 0xb9b4aa, roughness: 1, side: DoubleSide, ...BEHIND_WIRES });
+const CLAY = new MeshStandardMaterial({ color: 0xb9b4aa, roughness: 1, ...BEHIND_WIRES });
+const CLAY_SHEET = CLAY.clone(); // seen from both sides
+CLAY_SHEET.side = DoubleSide;
 const WIRES = new MeshBasicMaterial({ wireframe: true, color: 0x70787f, transparent: true, opacity: 0.3, toneMapped: false });
 
 export class Layer {
@@ -62,25 +64,21 @@ export class Layer {
     this.root.visible = look.visible;
     this.#wires.forEach((wires) => (wires.visible = look.wireframe));
     if (look.visible) {
-      const { geometries, material } = this.#shaded(look.shading, look.normals);
+      const geometries = this.#geometries(look.shading, look.normals);
       this.meshes.forEach((mesh, i) => {
         const own = this.#surfaces[i]!;
         mesh.geometry = geometries?.[i] ?? own.geometry;
-        mesh.material = material ?? own.material;
+        mesh.material = look.shading === "raking" ? clayFor(own.material) : geometries ? HEAT : own.material;
       });
     }
   }
 
-  /** What takes the place of the meshes' own geometries and materials, if anything does. */
-  #shaded(shading: Shading, normals: Normals): { geometries?: BufferGeometry[]; material?: Material } {
-    if (shading === "heat" && this.#hot) {
-      return { geometries: this.#hot, material: HEAT };
-    }
+  /** What takes the place of the meshes' own geometries, if anything does. */
+  #geometries(shading: Shading, normals: Normals): BufferGeometry[] | undefined {
     if (shading === "raking" && normals === "geometry") {
-      this.#smooth ??= this.#with("normal", smoothNormals(this.meshes));
-      return { geometries: this.#smooth, material: CLAY };
+      return (this.#smooth ??= this.#with("normal", smoothNormals(this.meshes)));
     }
-    return shading === "raking" ? { material: CLAY } : {};
+    return shading === "heat" ? this.#hot : undefined;
   }
 
   /** The meshes' geometries with one attribute in place of their own, the other arrays shared. */
@@ -106,6 +104,10 @@ export class Layer {
       [material].flat().forEach(disposeMaterial);
     }
   }
+}
+
+function clayFor(material: Material | Material[]): Material {
+  return [material].flat().some(({ side }) => side === DoubleSide) ? CLAY_SHEET : CLAY;
 }
 
 /** The mesh's edges, moving with it: skins and instances are cloned with what they hang on. */

@@ -430,6 +430,21 @@ test("work can be cancelled at any stage, and started again", async () => {
   assert.equal(await headline(), "Your mark is in the copy");
 });
 
+test("what a person waits for goes on behind another view, and while the form is filled in anew", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await fillKey();
+  await page.getByLabel("Tag", { exact: true }).fill(TAG);
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await page.getByLabel("Tag", { exact: true }).fill("NEXT");
+  await page.getByRole("tab", { name: "Check" }).click();
+  await page.getByRole("tab", { name: "Protect" }).click();
+  await result().waitFor();
+  assert.equal(await headline(), "Your mark is in the copy");
+  assert.equal(await result().locator("code").first().textContent(), TAG);
+  await page.getByRole("button", { name: "Mark this model" }).click();
+  await result().locator("code", { hasText: "NEXT" }).first().waitFor();
+});
+
 test("after one visit the page works without a network, through a reload", async () => {
   await page.getByText("Ready to work offline").waitFor();
   await context.setOffline(true);

@@ -107,11 +107,10 @@ export class Protect extends View {
 
   /** While another view is in front, nothing is tried: it may need the engine. */
   onShown(isShown: boolean): void {
-    clearTimeout(this.#timer);
-    if (!isShown) {
-      this.#dropTrial();
-    } else if (!this.#isMarked) {
+    if (isShown) {
       this.#tryLater();
+    } else if (!this.#trial?.isDone) {
+      this.#dropTrial();
     }
   }
 
@@ -120,9 +119,7 @@ export class Protect extends View {
     if (this.#trial?.isExact) {
       this.#dropTrial();
     }
-    if (!this.#isMarked) {
-      this.#tryLater();
-    }
+    this.#tryLater();
   }
 
   /** Another strength or other carriers: the copy that stands there is not of these. */
@@ -142,8 +139,11 @@ export class Protect extends View {
     this.#isMarked = false;
   }
 
+  /** One that has been taken over as the result goes on: only who waits for it ends it. */
   #dropTrial(): void {
-    this.#trial?.abort();
+    if (!this.isRunning) {
+      this.#trial?.abort();
+    }
     this.#trial = undefined;
   }
 
@@ -156,7 +156,8 @@ export class Protect extends View {
   async #try(): Promise<void> {
     const { model } = this;
     const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
-    if (!model || !this.#isPromising() || this.root.hidden || this.isRunning || (this.#trial && !isExact)) {
+    const isNeeded = !this.#isMarked && (!this.#trial || (isExact && !this.#trial.isExact));
+    if (!model || !isNeeded || !this.#isPromising() || this.root.hidden || this.isRunning) {
       return;
     }
     const trial = this.#start(model, isExact);
@@ -180,7 +181,7 @@ export class Protect extends View {
   }
 
   #start(model: Model, isExact: boolean): Trial {
-    this.#dropTrial();
+    this.#trial?.abort();
     const options: EmbedOptions = {
       strength: this.#strength.value as Preset,
       carriers: this.#chosenBoxes().map((box) => box.value as Carrier),
@@ -201,12 +202,15 @@ export class Protect extends View {
       clearTimeout(this.#timer);
       this.#preview.hide();
       const trial = this.#trial?.isExact ? this.#trial : this.#start(model, true);
-      const embedding = await runTask(this.outcome, controller, (progress) => trial.follow(progress));
-      if (embedding && model === this.model) {
+      const embedding = await runTask(this.outcome, controller, (progress) => trial.follow(progress)).catch((error: unknown) => {
+        this.#trial = undefined; // what failed can be asked for again
+        throw error;
+      });
+      if (!embedding) {
+        this.#trial = undefined;
+      } else if (model === this.model) {
         this.#isMarked = true;
         await this.#present(model, embedding);
-      } else if (trial === this.#trial) {
-        this.#dropTrial();
       }
     });
   }

@@ -7,6 +7,7 @@ export type Listener = Pick<Progress, "stage" | "onProgress">;
 export class Trial {
   readonly embedding: Promise<Embedding>;
   readonly #controller = new AbortController();
+  #isDone = false;
   #listener: Listener;
   /** What the listener last heard; `null` for how far a stage is that has no end in sight. */
   #last: [stage: Stage | "key", fraction: number | null] | undefined;
@@ -23,7 +24,7 @@ export class Trial {
       stage: (name) => this.#hear(name, null),
       onProgress: (name, fraction) => this.#hear(name, fraction),
     });
-    this.embedding.catch(() => {}); // whoever waits for it hears of it
+    this.embedding.catch(() => {}).finally(() => (this.#isDone = true)); // whoever waits for it hears of what went wrong
   }
 
   /** Goes on before another listener, which hears at once where the work is, and can end it. */
@@ -40,8 +41,8 @@ export class Trial {
     this.#controller.abort();
   }
 
-  get isAborted(): boolean {
-    return this.#controller.signal.aborted;
+  get isDone(): boolean {
+    return this.#isDone;
   }
 
   #hear(stage: Stage | "key", fraction: number | null): void {

@@ -53,13 +53,19 @@ export function readingRows(reading: Extraction): [string, Node | string][] {
   ];
 }
 
-/** How far vertices move, as rows of `numbers`. */
-export function displacementRows({ rmsRel, maxRel, diagonal }: EmbedReport): [string, string][] {
-  const both = (rel: number) => `${percent(rel)} of the diagonal (${significant(rel * diagonal)} units)`;
-  return [
-    ["Displacement, RMS", both(rmsRel)],
-    ["Displacement, largest", both(maxRel)],
-  ];
+/** How far vertices move: against the model's size, which says what is seen, and in its own units. */
+export function displacement({ rmsRel, maxRel, diagonal, movedVertices, vertices }: EmbedReport): HTMLElement {
+  const both = (rel: number) => h("span", { class: "both" }, h("span", {}, `${percent(rel)} of the diagonal`), h("span", {}, `${significant(rel * diagonal)} units`));
+  return h(
+    "section",
+    { class: "displacement", "aria-label": "How far vertices move" },
+    h("h3", {}, "How far vertices move"),
+    numbers([
+      ["RMS", both(rmsRel)],
+      ["Largest", both(maxRel)],
+      ["Moved", `${count(movedVertices)} of ${count(vertices)}`],
+    ]),
+  );
 }
 
 /** What was tried on the marked copy, one a row, and what came of it: in words and by a sign, never by colour alone. */

@@ -1,7 +1,7 @@
 /** What a strength does to this model, beside the choice of it: how far vertices move, and what the mark would survive. */
 import type { EmbedReport } from "meshmark";
 import { announce, find, h } from "./dom";
-import { displacementRows, forecastList, numbers } from "./outcome";
+import { displacement, forecastList } from "./outcome";
 import type { Listener } from "./trial";
 import { losses, problem, STAGES } from "./words";
 
@@ -24,8 +24,8 @@ export class Preview {
 
   show(report: EmbedReport, isExact: boolean): void {
     const lost = losses(report.forecast);
-    this.#say(isExact ? "" : "Tried with a key made for this preview. Yours moves other vertices, about as far.");
-    this.#content.replaceChildren(numbers(displacementRows(report)), forecastList(report.forecast));
+    this.#say(isExact ? "" : "Tried with a key made for this preview. With yours, these figures may differ.");
+    this.#content.replaceChildren(displacement(report), forecastList(report.forecast));
     announce(`Preview ready. ${lost ?? "The mark should survive all that was tried."}`);
   }
 

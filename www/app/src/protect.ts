@@ -4,7 +4,7 @@ import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, isKeyComplete, keyMaker, strangerKey, type KeyMaker } from "./key-form";
 import { isGltf, renamed, type Model } from "./model";
-import { actions, card, carrierTable, details, displacementRows, forecastList, note, numbers, present, readingRows } from "./outcome";
+import { actions, card, carrierTable, details, displacement, forecastList, note, numbers, present, readingRows } from "./outcome";
 import { Preview } from "./preview";
 import { embedReport } from "./report";
 import { save, saveJson } from "./save";
@@ -239,9 +239,8 @@ export class Protect extends View {
       numbers([
         ...readingRows(readBack),
         ["Held by", holders(report)],
-        ...displacementRows(report),
-        ["Vertices moved", `${count(report.movedVertices)} of ${count(report.vertices)}`],
       ]),
+      displacement(report),
       details(
         "Carriers and files",
         carrierTable(readBack.carriers),

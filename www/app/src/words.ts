@@ -18,11 +18,11 @@ export const CARRIERS: Record<Carrier, { name: string; home: string; survives: s
 /** What is tried on a marked model, to follow "It survives". */
 const ATTACKS: Record<string, string> = {
   none: "no change at all",
-  noise: "noise of 0.1 % of the diagonal",
+  noise: "noise of 0.1 % of its radius",
   quantize: "rounding to 11 bits",
   smooth: "10 steps of smoothing",
-  "simplify-30": "removing 30 % of its vertices",
-  "simplify-70": "removing 70 % of its vertices",
+  "simplify-30": "removing 30 % of its triangles",
+  "simplify-70": "removing 70 % of its triangles",
   crop: "cutting 30 % of it away",
 };
 
@@ -51,6 +51,7 @@ export const STAGES: Record<Stage | "key", string> = {
   write: "Writing the copy",
   measure: "Measuring the geometry",
   test: "Looking for the mark",
+  forecast: "Trying what the mark survives",
 };
 
 const LN_10 = Math.log(10);

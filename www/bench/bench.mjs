@@ -77,7 +77,7 @@ function hostModel() {
 
 /** Times of work that was not done, or done otherwise, say nothing. */
 function assertDone(command, { sha256, tag, ms }) {
-  const stages = { key: ["key"], embed: ["read", "embed", "write", "measure", "test"], extract: ["read", "measure", "test"] };
+  const stages = { key: ["key"], embed: ["read", "embed", "write", "measure", "test", "forecast"], extract: ["read", "measure", "test"] };
   assert.deepEqual(Object.keys(ms).sort(), stages[command].sort());
   assert.equal(sha256, command === "embed" ? report.markedSha256 : undefined);
   assert.equal(tag, command === "extract" ? TAG : undefined);

@@ -5,7 +5,7 @@ import { brotliCompressSync, gzipSync } from "node:zlib";
 /** What the commands are called, and their stages in order; `null` is all of them. */
 const COMMANDS = {
   key: { title: "key derivation", stages: [null] },
-  embed: { title: "embed", stages: ["read", "embed", "write", "measure", "test", null] },
+  embed: { title: "embed", stages: ["read", "embed", "write", "measure", "test", "forecast", null] },
   extract: { title: "extract", stages: ["read", "measure", "test", null] },
 };
 
@@ -44,8 +44,9 @@ ${rows(samples, ({ title, stages }, runs) => stages.map((stage) => timesRow(titl
   Chromium runs take turns, so that what else the machine does falls on both. Every embedding gave the same bytes, and every
   extraction the tag.
 * \`embed\` reads its output back: \`read\` is of the host and of the output, \`measure\` and \`test\` are of the output.
-* A stage lasts from its first progress report to the next stage's. So \`test\` of \`embed\` also has the SHA-256 of both files and,
-  natively, the writing of the output; \`test\` of \`extract\` in Chromium also has the evidence's way out of the module and back.
+* A stage lasts from its first progress report to the next stage's. So \`forecast\` also has the SHA-256 of both files and,
+  natively, the writing of the output.
+* \`extract\` ends as soon as it is sure: of a marked model it measures the surface as it is, and no smoothing is undone.
 * Native key derivation is how much longer a process lives with a passphrase than with a key file.
 * Chromium's clock has steps of 0.1 ms.
 

@@ -157,6 +157,9 @@ fn cli_tests_a_list_of_keys() {
             .unwrap()
             .contains("line 1")
     );
+    fs::write(here.path("keys.txt"), "# none\n").unwrap();
+    let (code, ..) = here.run("test marked.mmev --keys keys.txt");
+    assert_eq!(code, 2, "a list without keys says nothing");
 }
 
 #[test]

@@ -366,6 +366,9 @@ fn read_keys(text: &str) -> Result<Vec<(String, Key)>, Failure> {
         };
         keys.push((name, key));
     }
+    if keys.is_empty() {
+        return Err("there is no key in the list".into());
+    }
     Ok(keys)
 }
 

@@ -47,9 +47,6 @@ impl Carrier {
     /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
     pub const SHARE_ON_TOP: f64 = 0.25;
 
-    /// The exponent that RING has to reach on top of SOLID to be worth what it takes from that: what a mark of 48 bits needs.
-    pub const WORTH_ON_TOP: f64 = 80.0;
-
     /// The displacement of all V vertices that gives the host the mark.
     pub fn embed(
         self,

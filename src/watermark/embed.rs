@@ -3,7 +3,7 @@
 use super::forecast::forecast;
 use super::{EmbedOptions, EmbedReport, Error, Verdict, detect};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, CarrierError, Host, Mark, ring};
+use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files};
@@ -72,25 +72,11 @@ pub fn embed(
             on_top: !is_first,
         };
         match carrier.embed(&host, &mark, progress) {
-            Ok(displacement) => {
-                let moved = mesh.positions.iter().zip(displacement).map(|(p, d)| *p + d);
-                let marked = mesh.with_positions(moved.collect());
-                let reached = match carrier {
-                    Carrier::Ring if !is_first => ring::Measurement::new(&marked)
-                        .read(key)
-                        .exponent(&codeword),
-                    _ => f64::INFINITY,
-                };
-                if reached < Carrier::WORTH_ON_TOP {
-                    refusals.push(CarrierError::TooWeak {
-                        carrier,
-                        reached,
-                        needed: Carrier::WORTH_ON_TOP,
-                    });
-                } else {
-                    mesh = marked;
-                }
-            }
+            Ok(displacement) => mesh
+                .positions
+                .iter_mut()
+                .zip(displacement)
+                .for_each(|(position, d)| *position += d),
             Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(refusal) => refusals.push(refusal),
         }

@@ -7,7 +7,7 @@
 
 use super::address::{self, AddressKind, NEEDED_ADDRESSES, Turn};
 use super::feature::{Features, Neighbourhoods};
-use super::{Owned, Ownership, STEP};
+use super::{Measurement, Owned, Ownership, STEP};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::geometry::{Pose, diagonal, vertex_normals};
 use crate::mesh::Mesh;
@@ -24,6 +24,8 @@ const RIDGE: f64 = 0.15;
 const LEAST_WEIGHT: f64 = 0.05;
 /// No vertex moves more than so many times the RMS limit.
 const CLAMP: f64 = 4.0;
+/// The exponent that RING has to reach on top of another mark: what 48 bits need.
+const WORTH_ON_TOP: f64 = 80.0;
 
 /// The displacement of all V vertices that gives the host the mark: along vertex normals, its RMS at most the host's limit.
 pub fn embed(
@@ -94,8 +96,29 @@ pub fn embed(
         host.admissible.project(&mut displacement);
         scale_to_rms(&mut displacement, limit);
     }
+    if host.on_top {
+        speaks_up(host, mark, &displacement)?;
+    }
     step(progress, Stage::Embed, 1.0)?;
     Ok(displacement)
+}
+
+/// Whether the mark, as a detector reads it, is worth what it takes from the one below it.
+fn speaks_up(host: &Host, mark: &Mark, displacement: &[DVec3]) -> Result<(), CarrierError> {
+    let moved = host.mesh.positions.iter().zip(displacement);
+    let marked = host
+        .mesh
+        .with_positions(moved.map(|(p, d)| *p + *d).collect());
+    let reading = Measurement::new(&marked).read(mark.key);
+    let reached = reading.exponent(mark.codeword);
+    if reached < WORTH_ON_TOP {
+        return Err(CarrierError::TooWeak {
+            carrier: Carrier::Ring,
+            reached,
+            needed: WORTH_ON_TOP,
+        });
+    }
+    Ok(())
 }
 
 /// Addresses by position, in the mesh's own frame with its axes as they were in the host's.

@@ -8,6 +8,7 @@ use super::measurement::{Axes, axes_of};
 use super::problem::Problem;
 use super::{AREAS_TO_EMBED, Lattice, boundary, cosine, oriented, pitches, pose_of, steps_for};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
+use crate::detection::Statistic;
 use crate::geometry::{Pose, diagonal, roughness};
 use crate::mesh::{Edges, Mesh};
 use crate::progress::{Progress, Stage, step};
@@ -93,16 +94,15 @@ pub fn embed(
             break;
         }
     }
-    let attempt = best;
     step(progress, Stage::Embed, 1.0)?;
-    if attempt.exponent < NEEDED_EXPONENT * all {
+    if best.exponent < NEEDED_EXPONENT * all {
         return Err(CarrierError::TooWeak {
             carrier: Carrier::Solid,
-            reached: attempt.exponent,
+            reached: best.exponent,
             needed: NEEDED_EXPONENT * all,
         });
     }
-    Ok(attempt.displacement)
+    Ok(best.displacement)
 }
 
 /// How far each of the V vertices may move, beside others: rough surroundings hide more, and outlines less.
@@ -271,12 +271,8 @@ impl Embedder<'_> {
 
 /// The exponent of the bound if phases are read with the right symbols.
 fn exponent(phases: &[f64], active: &[Window]) -> f64 {
-    let (mut sum, mut energy) = (0.0, 0.0);
-    for (phase, window) in phases.iter().zip(active) {
-        sum += window.weight * cosine(*phase);
-        energy += window.weight * window.weight;
-    }
-    if sum > 0.0 { sum * sum / energy } else { 0.0 }
+    let read = |(phase, window): (&f64, &Window)| (window.weight * cosine(*phase), window.weight);
+    -Statistic::new(phases.iter().zip(active).map(read)).ln_p()
 }
 
 /// The weight of a window in the quadratic that touches its cosine from above at an error and has its minimum at 0.

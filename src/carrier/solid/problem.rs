@@ -306,17 +306,23 @@ impl<'a> Problem<'a> {
         sums
     }
 
-    /// The displacements of all vertices that take the windows nearest to their goals.
-    pub fn solve(&mut self, goals: &[f64], weights: &[f64], mu: f64) -> Vec<DVec3> {
-        let mut multipliers = std::mem::take(&mut self.multipliers);
-        self.relax(goals, weights, mu, &mut multipliers);
+    /// How much of each moment the windows' multipliers hold.
+    fn parts(&self, multipliers: &[f64]) -> PerMoment<f64> {
         let mut parts = [0.0; MOMENTS];
-        for (coupling, l) in self.coupling.iter().zip(&multipliers) {
+        for (coupling, l) in self.coupling.iter().zip(multipliers) {
             parts
                 .iter_mut()
                 .zip(coupling)
                 .for_each(|(part, c)| *part += c * l);
         }
+        parts
+    }
+
+    /// The displacements of all vertices that take the windows nearest to their goals.
+    pub fn solve(&mut self, goals: &[f64], weights: &[f64], mu: f64) -> Vec<DVec3> {
+        let mut multipliers = std::mem::take(&mut self.multipliers);
+        self.relax(goals, weights, mu, &mut multipliers);
+        let parts = self.parts(&multipliers);
         let mut of_moments = [0.0; MOMENTS];
         for (vector, part) in self.basis.iter().zip(parts) {
             of_moments
@@ -342,13 +348,7 @@ impl<'a> Problem<'a> {
     /// Conjugate gradients on the dual, preconditioned by the diagonal, from the multipliers at hand.
     fn relax(&self, goals: &[f64], weights: &[f64], mu: f64, multipliers: &mut [f64]) {
         let apply = |l: &[f64]| -> Vec<f64> {
-            let mut parts = [0.0; MOMENTS];
-            for (coupling, l) in self.coupling.iter().zip(l) {
-                parts
-                    .iter_mut()
-                    .zip(coupling)
-                    .for_each(|(part, c)| *part += c * l);
-            }
+            let parts = self.parts(l);
             let row = |window: usize| {
                 let inner: f64 = self
                     .gram

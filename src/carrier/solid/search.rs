@@ -12,6 +12,7 @@ use super::strength::{FAMILIES, blend, weights};
 use super::{AREAS, Lattice, STEPS, cosine, field, pitches};
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
+use crate::detection::Statistic;
 use crate::key::Key;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
@@ -324,13 +325,11 @@ impl<'a> Search<'a> {
 
 /// How well pilots agree with a quantizer's step, in nats.
 fn evidence(pilots: &[Window], step: f64) -> f64 {
-    let (mut sum, mut energy) = (0.0, 0.0);
-    for pilot in pilots {
+    let read = |pilot: &Window| {
         let weight = pilot.weight.max(0.0);
-        sum += weight * cosine(pilot.flux / step + pilot.dither);
-        energy += weight * weight;
-    }
-    if sum > 0.0 { sum * sum / energy } else { 0.0 }
+        (weight * cosine(pilot.flux / step + pilot.dither), weight)
+    };
+    -Statistic::new(pilots.iter().map(read)).ln_p()
 }
 
 /// The rotations that take a frame into itself: 4 if its axes are known but for their signs, else 24.

@@ -11,7 +11,7 @@ use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::detection::Statistic;
 use crate::geometry::{Pose, diagonal, roughness};
 use crate::mesh::{Edges, Mesh};
-use crate::progress::{Progress, Stage, step};
+use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -35,7 +35,16 @@ pub const NEEDED_WINDOWS: usize = 100;
 /// if nothing happened to the model.
 const NEEDED_EXPONENT: f64 = 125.0;
 
-/// Steps smaller than the strength's own are tried until the exponent is this, so many in all.
+/// The noise on each coordinate, RMS in diagonals, by which the first step is chosen: that of 7 bits or heavy decimation; and, where
+/// no mark of this strength would stand it, that of 0.5 % of the radius.
+const NOISES: [f64; 2] = [0.003, 0.0008];
+/// What a noise leaves of the cosines where nothing can be read any more.
+const HOPELESS: f64 = 0.3;
+/// A step smaller by sqrt 2 gives half as much again of exponent; but it squares what noise leaves of the cosines, with whose
+/// square the exponent goes. That pays above sqrt(1 / 1.5).
+const WORTH_A_SMALLER_STEP: f64 = 0.82;
+
+/// Smaller steps than the first are tried until the exponent is this, so many in all.
 const ENOUGH: f64 = 150.0;
 const STEPS_TRIED: usize = 4;
 
@@ -79,16 +88,8 @@ pub fn embed(
     };
     let mut best = Attempt::default();
     for clamp in CLAMPS {
-        for &step in steps.iter().take(STEPS_TRIED) {
-            for &pitch in &candidates {
-                let attempt = embedder.attempt(pitch, step, clamp, progress)?;
-                if attempt.exponent > best.exponent {
-                    best = attempt;
-                }
-            }
-            if best.exponent > ENOUGH * all {
-                break;
-            }
+        for &pitch in &candidates {
+            embedder.at_pitch(pitch, steps, clamp, ENOUGH * all, &mut best, progress)?;
         }
         if best.exponent > NEEDED_EXPONENT * all {
             break;
@@ -147,18 +148,20 @@ struct Attempt {
 }
 
 impl Embedder<'_> {
-    /// Embeds with a pitch and a step.
-    fn attempt(
+    /// Embeds with a pitch, and with smaller steps until the best of all attempts is enough.
+    fn at_pitch(
         &self,
         pitch: f64,
-        step: f64,
+        steps: &[f64],
         clamp: f64,
+        enough: f64,
+        best: &mut Attempt,
         progress: &mut dyn Progress,
-    ) -> Result<Attempt, CarrierError> {
+    ) -> Result<(), Cancelled> {
         let placement = self.lattice.placed(DMat3::IDENTITY, pitch);
         let mut active = windows(&clusters(self.mesh, &self.pose, pitch), &placement);
         if active.len() < NEEDED_WINDOWS {
-            return Ok(Attempt::default());
+            return Ok(());
         }
         // What is to be added to a window's phase so that whole numbers carry its symbol.
         for window in &mut active {
@@ -170,15 +173,42 @@ impl Embedder<'_> {
             };
             window.dither = dither - coset;
         }
-        let step = step / pitch;
-        let mut problem = Problem::new(
-            self.mesh,
-            &self.pose,
-            &placement,
-            &active,
-            step,
-            &self.freedom,
-        );
+        let mut problem = Problem::new(self.mesh, &self.pose, &placement, &active, &self.freedom);
+        let left = |step: f64, noise: f64| {
+            let noise = noise * diagonal(&self.mesh.positions) / (self.pose.size * step);
+            attenuation(noise, problem.responses.iter().zip(&active))
+        };
+        let first = first_step(steps, left);
+        for &step in steps[first..].iter().take(STEPS_TRIED) {
+            let attempt = self.attempt(
+                &mut problem,
+                &placement,
+                &active,
+                step / pitch,
+                clamp,
+                progress,
+            )?;
+            if attempt.exponent > best.exponent {
+                *best = attempt;
+            }
+            if best.exponent > enough {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Embeds with a step in lattice coordinates.
+    fn attempt(
+        &self,
+        problem: &mut Problem,
+        placement: &Placement,
+        active: &[Window],
+        step: f64,
+        clamp: f64,
+        progress: &mut dyn Progress,
+    ) -> Result<Attempt, Cancelled> {
+        let pitch = placement.pitch;
         let to_lattice =
             (self.pose.axes * placement.rotation).transpose() * (1.0 / (self.pose.size * pitch));
         let from_lattice = self.pose.axes * placement.rotation * (self.pose.size * pitch);
@@ -190,13 +220,13 @@ impl Embedder<'_> {
         let mut ridge = problem.mean_diagonal();
         for round in 0..=ROUNDS {
             crate::progress::step(progress, Stage::Embed, round as f64 / ROUNDS as f64)?;
-            let fluxes = self.fluxes(&displacement, &placement, &active);
+            let fluxes = self.fluxes(&displacement, placement, active);
             let phases: Vec<f64> = fluxes
                 .iter()
-                .zip(&active)
+                .zip(active)
                 .map(|(flux, window)| flux / step + window.dither)
                 .collect();
-            let exponent = exponent(&phases, &active);
+            let exponent = exponent(&phases, active);
             if exponent > best.exponent {
                 best = Attempt {
                     exponent,
@@ -207,13 +237,13 @@ impl Embedder<'_> {
                 break;
             }
             let errors = phases.iter().map(|phase| phase.round() - phase);
-            let weights: Vec<f64> = errors.clone().zip(&active).map(majorised).collect();
+            let weights: Vec<f64> = errors.clone().zip(active).map(majorised).collect();
             let now = displacement.iter().map(|d| to_lattice * *d);
             let goals: Vec<f64> = problem
                 .times(now)
                 .iter()
                 .zip(errors)
-                .map(|(a, b)| a + b)
+                .map(|(a, b)| a + b * step)
                 .collect();
             let tries = if round == 0 { 4 } else { 1 };
             for _ in 0..tries {
@@ -267,6 +297,30 @@ impl Embedder<'_> {
             .map(|window| find(window.index).unwrap_or(window.flux))
             .collect()
     }
+}
+
+/// The first of the steps with which to try, by what noise leaves of the cosines with a step.
+fn first_step(steps: &[f64], left: impl Fn(f64, f64) -> f64) -> usize {
+    let [worst, usual] = NOISES;
+    let noise = if left(steps[0], worst) > HOPELESS {
+        worst
+    } else {
+        usual
+    };
+    let pays = |step: &f64| left(*step, noise) > WORTH_A_SMALLER_STEP;
+    steps.partition_point(pays).min(steps.len() - 1)
+}
+
+/// What a noise leaves of the windows' cosines, on average. The noise is the RMS of each coordinate of each vertex, in the units
+/// of a flux over its step.
+fn attenuation<'a>(noise: f64, windows: impl Iterator<Item = (&'a f64, &'a Window)>) -> f64 {
+    let (mut left, mut whole) = (0.0, 0.0);
+    for (response, window) in windows {
+        let phase = TAU * noise * response.sqrt();
+        left += window.weight * libm::exp(-0.5 * phase * phase);
+        whole += window.weight;
+    }
+    left / whole
 }
 
 /// The exponent of the bound if phases are read with the right symbols.

@@ -11,6 +11,8 @@ use crate::geometry::{Pose, Quadrature};
 use crate::mesh::Mesh;
 use glam::DVec3;
 
+/// Windows whose vertices are listed at a time: lists for all would double the memory.
+const BLOCK: usize = 512;
 const CG_STEPS: usize = 50;
 const CG_TOLERANCE: f64 = 1e-3;
 /// The moments that define a frame: volume, centre and spread.
@@ -18,7 +20,7 @@ const MOMENTS: usize = 10;
 
 type PerMoment<T> = [T; MOMENTS];
 
-/// Displacements are in lattice coordinates, fluxes in steps.
+/// Displacements and fluxes are in lattice coordinates.
 pub struct Problem<'a> {
     triangles: &'a [[u32; 3]],
     /// In lattice coordinates.
@@ -31,6 +33,8 @@ pub struct Problem<'a> {
     /// By window: its inner products with windows, itself included.
     gram: Lists<(u32, f64)>,
     diagonal: Vec<f64>,
+    /// By window: the variance of its flux where every coordinate of every vertex has a variance of 1.
+    pub responses: Vec<f64>,
     /// By window: the part of the moments in it, in an orthonormal basis of these.
     coupling: Vec<PerMoment<f64>>,
     /// Takes coordinates in that basis to multipliers of the moments.
@@ -85,7 +89,6 @@ impl<'a> Problem<'a> {
         pose: &Pose,
         placement: &Placement,
         active: &[Window],
-        step: f64,
         freedom: &'a [f64],
     ) -> Problem<'a> {
         let num_vertices = mesh.positions.len();
@@ -105,18 +108,19 @@ impl<'a> Problem<'a> {
             freedom,
             gram: Lists::default(),
             diagonal: Vec::new(),
+            responses: vec![0.0; active.len()],
             coupling: vec![[0.0; MOMENTS]; active.len()],
             basis: [[0.0; MOMENTS]; MOMENTS],
             multipliers: vec![0.0; active.len()],
         };
-        problem.push(active, step);
+        problem.push(active);
         problem.project();
         problem.multiply();
         problem
     }
 
     /// How windows and moments answer to every vertex.
-    fn push(&mut self, active: &[Window], step: f64) {
+    fn push(&mut self, active: &[Window]) {
         let quadrature = Quadrature::new(EDGE);
         let positions = active
             .iter()
@@ -137,7 +141,7 @@ impl<'a> Problem<'a> {
                     .unwrap_or(0);
                 let corners = triangle.map(|v| self.positions[v as usize]);
                 for sample in quadrature.samples(corners) {
-                    let push = sample.area * (sample.weights[corner] * self.freedom[vertex] / step);
+                    let push = sample.area * (sample.weights[corner] * self.freedom[vertex]);
                     for_each_near(sample.point, RADIUS, |index, _, q2| {
                         let Some(place) = rows.find(index) else {
                             return;
@@ -166,6 +170,7 @@ impl<'a> Problem<'a> {
                     continue;
                 }
                 self.pushes.items.push((row, sum.as_vec3().to_array()));
+                self.responses[row as usize] += (sum / self.freedom[vertex]).length_squared();
                 let coupling = &mut self.coupling[row as usize];
                 coupling
                     .iter_mut()
@@ -253,40 +258,44 @@ impl<'a> Problem<'a> {
         let num_windows = self.coupling.len();
         let pushes = &self.pushes;
         let num_vertices = self.positions.len() as u32;
-        let by_window = || {
-            (0..num_vertices).flat_map(|vertex| {
-                pushes
-                    .get(vertex as usize)
-                    .iter()
-                    .map(move |&(row, push)| (row, (vertex, push)))
-            })
-        };
-        let vertices: Lists<(u32, [f32; 3])> = Lists::from_pairs(num_windows, by_window);
         let mut sums = vec![0.0; num_windows];
         let mut touched: Vec<u32> = Vec::new();
-        for window in 0..num_windows {
-            for &(vertex, push) in vertices.get(window) {
-                let push = push.map(f64::from);
-                for &(other, its) in pushes.get(vertex as usize) {
-                    let sum = &mut sums[other as usize];
-                    if *sum == 0.0 {
-                        touched.push(other);
+        for start in (0..num_windows as u32).step_by(BLOCK) {
+            let block = start..(start + BLOCK as u32).min(num_windows as u32);
+            let by_window = || {
+                (0..num_vertices).flat_map(|vertex| {
+                    let pushes = pushes.get(vertex as usize).iter();
+                    pushes
+                        .filter(|(row, _)| block.contains(row))
+                        .map(move |&(row, push)| (row - start, (vertex, push)))
+                })
+            };
+            let vertices: Lists<(u32, [f32; 3])> = Lists::from_pairs(block.len(), by_window);
+            for window in 0..block.len() {
+                for &(vertex, push) in vertices.get(window) {
+                    let push = push.map(f64::from);
+                    for &(other, its) in pushes.get(vertex as usize) {
+                        let sum = &mut sums[other as usize];
+                        if *sum == 0.0 {
+                            touched.push(other);
+                        }
+                        *sum += push[0] * f64::from(its[0])
+                            + push[1] * f64::from(its[1])
+                            + push[2] * f64::from(its[2]);
                     }
-                    *sum += push[0] * f64::from(its[0])
-                        + push[1] * f64::from(its[1])
-                        + push[2] * f64::from(its[2]);
                 }
-            }
-            let whole = sums[window];
-            for other in touched.drain(..) {
-                let sum = std::mem::take(&mut sums[other as usize]);
-                if sum != 0.0 {
-                    self.gram.items.push((other, sum));
+                let window = start as usize + window;
+                let whole = sums[window];
+                for other in touched.drain(..) {
+                    let sum = std::mem::take(&mut sums[other as usize]);
+                    if sum != 0.0 {
+                        self.gram.items.push((other, sum));
+                    }
                 }
+                self.gram.end_list();
+                let outside: f64 = self.coupling[window].iter().map(|part| part * part).sum();
+                self.diagonal.push((whole - outside).max(1e-9 * whole));
             }
-            self.gram.end_list();
-            let outside: f64 = self.coupling[window].iter().map(|part| part * part).sum();
-            self.diagonal.push((whole - outside).max(1e-9 * whole));
         }
     }
 

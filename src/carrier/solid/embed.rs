@@ -35,16 +35,7 @@ pub const NEEDED_WINDOWS: usize = 100;
 /// if nothing happened to the model.
 const NEEDED_EXPONENT: f64 = 125.0;
 
-/// The noise on each coordinate, RMS in diagonals, by which the first step is chosen: that of 7 bits or heavy decimation; and, where
-/// no mark of this strength would stand it, that of 0.5 % of the radius.
-const NOISES: [f64; 2] = [0.003, 0.0008];
-/// What a noise leaves of the cosines where nothing can be read any more.
-const HOPELESS: f64 = 0.3;
-/// A step smaller by sqrt 2 gives half as much again of exponent; but it squares what noise leaves of the cosines, with whose
-/// square the exponent goes. That pays above sqrt(1 / 1.5).
-const WORTH_A_SMALLER_STEP: f64 = 0.82;
-
-/// Smaller steps than the first are tried until the exponent is this, so many in all.
+/// Steps smaller than the strength's own are tried until the exponent is this, so many in all.
 const ENOUGH: f64 = 150.0;
 const STEPS_TRIED: usize = 4;
 
@@ -89,7 +80,9 @@ pub fn embed(
     let mut best = Attempt::default();
     for clamp in CLAMPS {
         for &pitch in &candidates {
-            embedder.at_pitch(pitch, steps, clamp, ENOUGH * all, &mut best, progress)?;
+            if best.exponent <= ENOUGH * all {
+                embedder.at_pitch(pitch, steps, clamp, ENOUGH * all, &mut best, progress)?;
+            }
         }
         if best.exponent > NEEDED_EXPONENT * all {
             break;
@@ -174,12 +167,7 @@ impl Embedder<'_> {
             window.dither = dither - coset;
         }
         let mut problem = Problem::new(self.mesh, &self.pose, &placement, &active, &self.freedom);
-        let left = |step: f64, noise: f64| {
-            let noise = noise * diagonal(&self.mesh.positions) / (self.pose.size * step);
-            attenuation(noise, problem.responses.iter().zip(&active))
-        };
-        let first = first_step(steps, left);
-        for &step in steps[first..].iter().take(STEPS_TRIED) {
+        for &step in steps.iter().take(STEPS_TRIED) {
             let attempt = self.attempt(
                 &mut problem,
                 &placement,
@@ -297,30 +285,6 @@ impl Embedder<'_> {
             .map(|window| find(window.index).unwrap_or(window.flux))
             .collect()
     }
-}
-
-/// The first of the steps with which to try, by what noise leaves of the cosines with a step.
-fn first_step(steps: &[f64], left: impl Fn(f64, f64) -> f64) -> usize {
-    let [worst, usual] = NOISES;
-    let noise = if left(steps[0], worst) > HOPELESS {
-        worst
-    } else {
-        usual
-    };
-    let pays = |step: &f64| left(*step, noise) > WORTH_A_SMALLER_STEP;
-    steps.partition_point(pays).min(steps.len() - 1)
-}
-
-/// What a noise leaves of the windows' cosines, on average. The noise is the RMS of each coordinate of each vertex, in the units
-/// of a flux over its step.
-fn attenuation<'a>(noise: f64, windows: impl Iterator<Item = (&'a f64, &'a Window)>) -> f64 {
-    let (mut left, mut whole) = (0.0, 0.0);
-    for (response, window) in windows {
-        let phase = TAU * noise * response.sqrt();
-        left += window.weight * libm::exp(-0.5 * phase * phase);
-        whole += window.weight;
-    }
-    left / whole
 }
 
 /// The exponent of the bound if phases are read with the right symbols.

@@ -31,13 +31,13 @@ use std::f64::consts::TAU;
 /// Distances of lattice points, in units of the frame: a fifth is about 4 % of the diagonal.
 const PITCHES: [f64; 5] = [0.07, 0.1, 0.14, 0.2, 0.3];
 
-/// The area of a surface, in squared pitches, for which an embedder uses a pitch: some 1 000 to 3 500 windows. With fewer there is
-/// too little to say a message with; with more, windows are so small that attacks reach into them. One pitch suits every
-/// surface whose area in its own frame is 2 to 80, or two.
-const AREAS_TO_EMBED: std::ops::Range<f64> = 400.0..930.0;
+/// The area of a surface, in squared pitches, for which an embedder uses a pitch: some 1 500 to 3 500 windows. With fewer there is
+/// too little to say a message with, and more marks beside it drown it; with more, windows are so small that attacks reach into
+/// them. One pitch suits every surface whose area in its own frame is 4 to 160.
+const AREAS_TO_EMBED: std::ops::Range<f64> = 800.0..1810.0;
 
 /// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
-const AREAS: std::ops::Range<f64> = 330.0..1100.0;
+const AREAS: std::ops::Range<f64> = 680.0..2150.0;
 
 /// Steps of the quantizer: the displacement of a surface, in units of the frame, that takes a window of about a squared pitch
 /// of it from one symbol to the same symbol again. Each is smaller than the one before by a factor of sqrt 2.

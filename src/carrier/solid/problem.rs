@@ -33,8 +33,6 @@ pub struct Problem<'a> {
     /// By window: its inner products with windows, itself included.
     gram: Lists<(u32, f64)>,
     diagonal: Vec<f64>,
-    /// By window: the variance of its flux where every coordinate of every vertex has a variance of 1.
-    pub responses: Vec<f64>,
     /// By window: the part of the moments in it, in an orthonormal basis of these.
     coupling: Vec<PerMoment<f64>>,
     /// Takes coordinates in that basis to multipliers of the moments.
@@ -108,7 +106,6 @@ impl<'a> Problem<'a> {
             freedom,
             gram: Lists::default(),
             diagonal: Vec::new(),
-            responses: vec![0.0; active.len()],
             coupling: vec![[0.0; MOMENTS]; active.len()],
             basis: [[0.0; MOMENTS]; MOMENTS],
             multipliers: vec![0.0; active.len()],
@@ -170,7 +167,6 @@ impl<'a> Problem<'a> {
                     continue;
                 }
                 self.pushes.items.push((row, sum.as_vec3().to_array()));
-                self.responses[row as usize] += (sum / self.freedom[vertex]).length_squared();
                 let coupling = &mut self.coupling[row as usize];
                 coupling
                     .iter_mut()

@@ -2,7 +2,7 @@
 //!
 //! As bytes: the pitch in 8, the units of areas and of moments in 4 each, the number of clusters in 4; then the clusters in
 //! increasing order of their cells. A cluster: the distance of its cell's number from the one before (LEB128), its centre
-//! within the cell in 3 bytes, its area vector in 6, its moment in 2, its weight in 2. All integers are little-endian.
+//! within the cell in 3 bytes, its area vector in 6, its moment in 2, its weight in 1. All integers are little-endian.
 
 use super::PITCHES;
 use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, corner, number};
@@ -12,6 +12,9 @@ use glam::DVec3;
 const OFFSETS: f64 = 256.0;
 /// The largest of the rounded areas and moments.
 const LARGEST: f64 = 32_767.0;
+
+/// Steps in an octave of weights.
+const WEIGHTS: f64 = 16.0;
 
 /// The clusters of a surface, rounded.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +33,8 @@ struct Rounded {
     offset: [u8; 3],
     area: [i16; 3],
     moment: i16,
-    weight: u16,
+    /// How much lighter than the heaviest possible, in steps of octaves.
+    lightness: u8,
 }
 
 impl Store {
@@ -61,7 +65,7 @@ impl Store {
             centre: self.centre(rounded.cell, rounded.offset),
             area: DVec3::from_array(rounded.area.map(f64::from)) * area_unit,
             moment: f64::from(rounded.moment) * f64::from(self.moment_unit),
-            weight: f64::from(rounded.weight) * area_unit,
+            weight: LARGEST * area_unit * libm::exp2(-f64::from(rounded.lightness) / WEIGHTS),
         };
         self.rounded.iter().map(cluster).collect()
     }
@@ -90,7 +94,8 @@ impl Store {
             offset,
             area: area.to_array().map(|part| part.round() as i16),
             moment: (moment / f64::from(self.moment_unit)).round() as i16,
-            weight: (cluster.weight / f64::from(self.area_unit)).round() as u16,
+            lightness: (libm::log2(LARGEST * f64::from(self.area_unit) / cluster.weight) * WEIGHTS)
+                .round() as u8,
         }
     }
 
@@ -114,7 +119,7 @@ impl Store {
                 bytes.extend(number.to_le_bytes());
             }
             bytes.extend(rounded.moment.to_le_bytes());
-            bytes.extend(rounded.weight.to_le_bytes());
+            bytes.push(rounded.lightness);
         }
     }
 
@@ -148,12 +153,15 @@ impl Store {
             }
             let offset = take(bytes)?;
             let mut number = || Some(i16::from_le_bytes(take(bytes)?));
+            let area = [number()?, number()?, number()?];
+            let moment = number()?;
+            let [lightness] = take(bytes)?;
             rounded.push(Rounded {
                 cell,
                 offset,
-                area: [number()?, number()?, number()?],
-                moment: number()?,
-                weight: number()? as u16,
+                area,
+                moment,
+                lightness,
             });
         }
         Some(Store {

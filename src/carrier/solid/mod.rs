@@ -29,11 +29,11 @@ use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::TAU;
 
 /// Distances of lattice points, in units of the frame: a fifth is about 4 % of the diagonal.
-const PITCHES: [f64; 5] = [0.07, 0.1, 0.14, 0.2, 0.3];
+const PITCHES: [f64; 6] = [0.05, 0.07, 0.1, 0.14, 0.2, 0.3];
 
 /// The area of a surface, in squared pitches, for which an embedder uses a pitch: some 1 500 to 3 500 windows. With fewer there is
 /// too little to say a message with, and more marks beside it drown it; with more, windows are so small that attacks reach into
-/// them. One pitch suits every surface whose area in its own frame is 4 to 160.
+/// them. One pitch suits every surface whose area in its own frame is 2 to 160.
 const AREAS_TO_EMBED: std::ops::Range<f64> = 800.0..1810.0;
 
 /// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.

@@ -1,15 +1,14 @@
 //! Simplification by quadric error metrics.
 
 use super::editing::Editable;
+use crate::geometry::Quadric;
 use crate::mesh::Mesh;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The planes that hold a border in place, against those of the faces.
 const BORDER_WEIGHT: f64 = 10.0;
-/// Pull of an edge's middle on its vertex, against the planes: it decides where they leave the choice.
-const REGULARISATION: f64 = 1e-6;
 
 /// Collapses edges, the one that changes the surface least first, until the `fraction` (0 to 1) of the faces is gone:
 /// quadric error metrics (Garland and Heckbert 1997), weighted by area, with their planes through borders. Each collapse
@@ -59,55 +58,6 @@ fn placed(editable: &Editable, quadrics: &[Quadric], a: u32, b: u32) -> (DVec3, 
     let sum = quadrics[a as usize].plus(&quadrics[b as usize]);
     let to = sum.minimum(editable.at(a).midpoint(editable.at(b)));
     (to, sum.at(to).max(0.0))
-}
-
-/// Sum of squared distances from planes: x.Ax + 2 b.x + c.
-#[derive(Clone, Copy)]
-struct Quadric {
-    a: DMat3,
-    b: DVec3,
-    c: f64,
-}
-
-impl Quadric {
-    const ZERO: Quadric = Quadric {
-        a: DMat3::ZERO,
-        b: DVec3::ZERO,
-        c: 0.0,
-    };
-
-    fn plane(normal: DVec3, through: DVec3, weight: f64) -> Quadric {
-        let offset = -normal.dot(through);
-        let axis = |n: f64| normal * (n * weight);
-        Quadric {
-            a: DMat3::from_cols(axis(normal.x), axis(normal.y), axis(normal.z)),
-            b: normal * (offset * weight),
-            c: offset * offset * weight,
-        }
-    }
-
-    fn plus(&self, other: &Quadric) -> Quadric {
-        Quadric {
-            a: self.a + other.a,
-            b: self.b + other.b,
-            c: self.c + other.c,
-        }
-    }
-
-    fn at(&self, x: DVec3) -> f64 {
-        x.dot(self.a * x) + 2.0 * self.b.dot(x) + self.c
-    }
-
-    /// Where it is least; near `guess` where the planes leave that open.
-    fn minimum(&self, guess: DVec3) -> DVec3 {
-        let trace = self.a.x_axis.x + self.a.y_axis.y + self.a.z_axis.z;
-        let pull = REGULARISATION * trace;
-        if pull <= 0.0 {
-            return guess;
-        }
-        let system = self.a + DMat3::from_diagonal(DVec3::splat(pull));
-        system.inverse() * (guess * pull - self.b)
-    }
 }
 
 /// The planes of each vertex's faces, and those that stand on its borders.

@@ -4,6 +4,7 @@
 //! codeword, `measure` takes from a mesh all that needs no key, and `read` turns a measurement and a key into soft symbols,
 //! one list for each hypothesis that it declares in advance.
 
+pub mod osveta;
 pub mod ring;
 pub mod solid;
 

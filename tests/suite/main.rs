@@ -17,6 +17,7 @@ mod golden;
 mod key;
 mod mesh;
 mod models;
+mod osveta;
 mod payload;
 mod ring;
 mod robustness;

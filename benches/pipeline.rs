@@ -2,6 +2,7 @@
 #![allow(missing_docs)] // criterion's macros write undocumented functions
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use meshmark::carrier::osveta::{Ranking, rank};
 use meshmark::document::Document;
 use meshmark::mesh::shapes;
 use meshmark::scene::{Scene, to_glb};
@@ -40,6 +41,12 @@ fn pipeline(criterion: &mut Criterion) {
             BatchSize::LargeInput,
         );
     });
+    group.finish();
+    let large = shapes::asteroid(200, 250);
+    let mut group = criterion.benchmark_group("rank 50k vertices");
+    for ranking in Ranking::ALL {
+        group.bench_function(ranking.name(), |b| b.iter(|| rank(&large, ranking)));
+    }
     group.finish();
     criterion.bench_function("key from a passphrase", |b| {
         b.iter(|| Key::from_passphrase("Ada", "correct horse"))

@@ -22,7 +22,7 @@ pub use remesh::remesh;
 pub use reorder::reorder;
 pub use resample::resample;
 pub use similarity::similarity;
-pub use simplify::simplify;
+pub use simplify::{simplify, simplify_to};
 pub use smooth::{smooth, smooth_inside, taubin};
 pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};
 pub use warp::warp;

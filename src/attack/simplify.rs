@@ -10,13 +10,19 @@ use std::collections::BinaryHeap;
 /// The planes that hold a border in place, against those of the faces.
 const BORDER_WEIGHT: f64 = 10.0;
 
-/// Collapses edges, the one that changes the surface least first, until the `fraction` (0 to 1) of the faces is gone:
-/// quadric error metrics (Garland and Heckbert 1997), weighted by area, with their planes through borders. Each collapse
-/// removes an edge, and two faces inside, so this is about the fraction of the edges too. The LIRIS benchmark (Wang et al.
-/// 2010) removes 10 to 97.5 %. Stops earlier where no collapse is left that keeps the surface's topology and turns no face
-/// over. O(F log F).
+/// Simplifies until the `fraction` (0 to 1) of the faces is gone. Each collapse removes an edge, and two faces inside, so this
+/// is about the fraction of the edges too. The LIRIS benchmark (Wang et al. 2010) removes 10 to 97.5 %.
 pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
-    let target = ((1.0 - fraction) * mesh.triangles.len() as f64).round() as usize;
+    simplify_to(
+        mesh,
+        ((1.0 - fraction) * mesh.triangles.len() as f64).round() as usize,
+    )
+}
+
+/// Collapses edges, the one that changes the surface least first, until no more than `num_faces` are left: quadric error metrics
+/// (Garland and Heckbert 1997), weighted by area, with their planes through borders. Inside, each collapse removes two faces.
+/// Stops earlier where no collapse is left that keeps the surface's topology and turns no face over. O(F log F).
+pub fn simplify_to(mesh: &Mesh, num_faces: usize) -> Mesh {
     let mut editable = Editable::new(mesh);
     let mut quadrics = quadrics(&editable, mesh);
     // Counts a vertex's changes: a candidate of another count is out of date.
@@ -31,7 +37,7 @@ pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
         .into_iter()
         .map(|[a, b]| candidate(&editable, &quadrics, &ages, a, b))
         .collect();
-    while editable.num_faces() > target {
+    while editable.num_faces() > num_faces {
         let Some(Reverse((_, a, b, age_a, age_b))) = heap.pop() else {
             break;
         };

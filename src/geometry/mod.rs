@@ -1,6 +1,8 @@
 //! Algorithms on a mesh, one per file.
 
 mod arc;
+mod curvature;
+mod dihedral;
 mod distortion;
 mod normal;
 mod orientation;
@@ -12,8 +14,10 @@ pub mod spectral;
 mod surface;
 
 pub use arc::refined;
+pub use curvature::{Curvature, CurvatureIntegrals, curvature_integrals, fitted_curvature};
+pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
-pub use normal::vertex_normals;
+pub use normal::{face_areas, normal_deviations, vertex_normals};
 pub use orientation::outward;
 pub use pose::Pose;
 pub use quadrature::{Quadrature, Sample};

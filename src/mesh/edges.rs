@@ -147,6 +147,18 @@ impl Edges {
         })
     }
 
+    /// The edges with two faces.
+    pub fn pairs(&self) -> impl Iterator<Item = Pair> + '_ {
+        self.edges().filter_map(|sides| match sides {
+            [first, second] => Some(Pair {
+                ends: [first.low, first.high],
+                faces: [first.face, second.face],
+                agree: first.ascending != second.ascending,
+            }),
+            _ => None,
+        })
+    }
+
     /// The one-rings.
     pub fn rings(&self, num_vertices: usize) -> Rings {
         let mut valences = vec![0; num_vertices];
@@ -213,6 +225,17 @@ fn find(parents: &mut [u32], mut face: u32) -> u32 {
         face = grandparent;
     }
     face
+}
+
+/// An edge with two faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Its vertices, the lower first.
+    pub ends: [u32; 2],
+    /// Its faces, the lower first.
+    pub faces: [u32; 2],
+    /// Whether they are wound alike: each runs along the edge in a direction of its own.
+    pub agree: bool,
 }
 
 /// How a mesh is wound.

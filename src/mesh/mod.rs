@@ -6,7 +6,7 @@ mod edges;
 pub mod shapes;
 
 pub use admissible::{Admissible, Orbit};
-pub use edges::{Edges, Rings, Winding};
+pub use edges::{Edges, Pair, Rings, Winding};
 
 use glam::DVec3;
 

@@ -1,30 +1,43 @@
 //! The paper's two vectors: stabilities in decreasing order, and the vertices that they belong to.
 
-use crate::geometry::collapse_costs;
+use crate::geometry::{
+    collapse_costs, curvature_integrals, dihedrals, face_areas, fitted_curvature,
+    normal_deviations, outward, vertex_normals,
+};
 use crate::mesh::{Edges, Mesh, Rings};
 use crate::order::order_by;
+use glam::DVec3;
 
 /// A vertex is an error of topology where its nearest neighbour is farther away than so many mean edges of the mesh. The paper
 /// names the criterion and no number.
 const TOO_FAR: f64 = 8.0;
 
-/// What stability is judged by.
+/// What stability is judged by. The paper names criteria and no weights: all three are interpretations of it. A vertex's score is
+/// the weighted mean of its ranks by each criterion's magnitude, so no criterion's units matter.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Ranking {
+    /// All that the paper names, at its word: Gaussian and mean curvature by differential geometry and by quadrics, the largest
+    /// and the mean dihedral angle, the largest deviation of normals, and, twice, the cost of the cheapest collapse.
+    Literal,
+    /// The same with curvature integrated over the vertex's cell instead of at a point, so that it does not grow where a mesh is
+    /// refined: K A, H sqrt(A); without the mean dihedral angle.
+    Integrated,
     /// The cost of the cheapest collapse alone (Garland and Heckbert 1997): the best predictor of who is found again.
     Collapse,
 }
 
 impl Ranking {
     /// Every ranking.
-    pub const ALL: [Ranking; 1] = [Ranking::Collapse];
+    pub const ALL: [Ranking; 3] = [Ranking::Literal, Ranking::Integrated, Ranking::Collapse];
 
     /// The name that scripts and pages use.
     pub fn name(self) -> &'static str {
         match self {
+            Ranking::Literal => "literal",
+            Ranking::Integrated => "integrated",
             Ranking::Collapse => "collapse",
         }
     }
@@ -44,21 +57,49 @@ pub struct Stability {
     pub stability: Vec<f64>,
 }
 
+impl Stability {
+    /// Those in concave regions and those elsewhere, each in the same order: a region is concave at a vertex where furrows turn
+    /// the surface by more than ridges. The companion of the paper embeds in rough concave regions. The mesh has to be wound
+    /// outwards.
+    pub fn split(&self, mesh: &Mesh) -> [Stability; 2] {
+        let mut turns = vec![0.0; mesh.positions.len()];
+        for dihedral in dihedrals(mesh, &Edges::new(mesh), &face_areas(mesh)) {
+            dihedral
+                .ends
+                .iter()
+                .for_each(|&v| turns[v as usize] += dihedral.angle);
+        }
+        [true, false].map(|concave| {
+            let pairs = self.order.iter().zip(&self.stability);
+            let (order, stability) = pairs
+                .filter(|&(&v, _)| (turns[v as usize] < 0.0) == concave)
+                .unzip();
+            Stability { order, stability }
+        })
+    }
+}
+
 /// Ranks the vertices of a mesh. O(V log V).
 pub fn rank(mesh: &Mesh, ranking: Ranking) -> Stability {
-    let rings = Edges::new(mesh).rings(mesh.positions.len());
-    let criteria = match ranking {
-        Ranking::Collapse => [(1.0, collapse_costs(mesh, &rings))],
-    };
-    let total: f64 = criteria.iter().map(|(weight, _)| weight).sum();
-    let mut scores = vec![0.0; mesh.positions.len()];
-    for (weight, values) in &criteria {
-        let shares = ranks(values).into_iter().map(|rank| rank * weight / total);
-        scores
-            .iter_mut()
-            .zip(shares)
-            .for_each(|(score, share)| *score += share);
+    let edges = Edges::new(mesh);
+    let rings = edges.rings(mesh.positions.len());
+    let costs = collapse_costs(mesh, &rings);
+    let mut score = Score::default();
+    if ranking == Ranking::Collapse {
+        score.add(1.0, &costs);
+    } else {
+        score.add(2.0, &costs);
+        if edges.pairs().all(|pair| pair.agree) {
+            score.add_shape(mesh, &edges, &rings, ranking);
+        } else {
+            let turned = Mesh {
+                triangles: outward(mesh),
+                ..mesh.clone()
+            };
+            score.add_shape(&turned, &Edges::new(&turned), &rings, ranking);
+        }
     }
+    let scores = score.mean();
     let near = near(mesh, &rings);
     let score = |v: u32| {
         let score = scores[v as usize];
@@ -71,8 +112,7 @@ pub fn rank(mesh: &Mesh, ranking: Ranking) -> Stability {
     let kept: Vec<u32> = (0..mesh.positions.len() as u32)
         .filter(|&v| near[v as usize])
         .collect();
-    // Scores are at least -1, so the bits of what they lack are in their order.
-    let order: Vec<u32> = order_by(kept.iter().map(|&v| (1.0 - score(v)).to_bits()))
+    let order: Vec<u32> = order_by(kept.iter().map(|&v| decreasing(score(v))))
         .into_iter()
         .map(|(_, place)| kept[place as usize])
         .collect();
@@ -80,6 +120,92 @@ pub fn rank(mesh: &Mesh, ranking: Ranking) -> Stability {
         stability: order.iter().map(|&v| score(v)).collect(),
         order,
     }
+}
+
+/// The weighted mean of ranks.
+#[derive(Default)]
+struct Score {
+    weight: f64,
+    sum: Vec<f64>,
+}
+
+impl Score {
+    fn add(&mut self, weight: f64, criterion: &[f64]) {
+        self.weight += weight;
+        self.sum.resize(criterion.len(), 0.0);
+        let ranks = ranks(criterion);
+        self.sum
+            .iter_mut()
+            .zip(ranks)
+            .for_each(|(sum, rank)| *sum += weight * rank);
+    }
+
+    fn mean(self) -> Vec<f64> {
+        self.sum.iter().map(|sum| sum / self.weight).collect()
+    }
+
+    /// What depends on which side is out.
+    fn add_shape(&mut self, mesh: &Mesh, edges: &Edges, rings: &Rings, ranking: Ranking) {
+        let (areas, normals) = (face_areas(mesh), vertex_normals(mesh));
+        let discrete = curvature_integrals(mesh, rings, &normals);
+        let fitted = fitted_curvature(mesh, rings, &normals);
+        if ranking == Ranking::Literal {
+            let pointwise = discrete.curvature();
+            for criterion in [
+                &pointwise.gaussian,
+                &pointwise.mean,
+                &fitted.gaussian,
+                &fitted.mean,
+            ] {
+                self.add(1.0, criterion);
+            }
+        } else {
+            let with_area = |values: &[f64], of: fn(f64, f64) -> f64| -> Vec<f64> {
+                let pairs = values.iter().zip(&discrete.area);
+                pairs.map(|(&value, &area)| of(value, area)).collect()
+            };
+            let over_root = |integral: f64, area: f64| {
+                if area > 0.0 {
+                    integral / area.sqrt()
+                } else {
+                    0.0
+                }
+            };
+            self.add(1.0, &discrete.gaussian);
+            self.add(1.0, &with_area(&discrete.mean, over_root));
+            self.add(
+                1.0,
+                &with_area(&fitted.gaussian, |value, area| value * area),
+            );
+            self.add(
+                1.0,
+                &with_area(&fitted.mean, |value, area| value * area.sqrt()),
+            );
+        }
+        let [largest, mean] = dihedral_angles(mesh, edges, &areas);
+        self.add(1.0, &largest);
+        if ranking == Ranking::Literal {
+            self.add(1.0, &mean);
+        }
+        self.add(1.0, &normal_deviations(mesh, &areas, &normals));
+    }
+}
+
+/// The largest and the mean dihedral angle at each vertex, without signs.
+fn dihedral_angles(mesh: &Mesh, edges: &Edges, areas: &[DVec3]) -> [Vec<f64>; 2] {
+    let mut largest = vec![0.0f64; mesh.positions.len()];
+    let mut mean = vec![(0.0, 0.0); mesh.positions.len()];
+    for dihedral in dihedrals(mesh, edges, areas) {
+        let angle = dihedral.angle.abs();
+        for vertex in dihedral.ends.map(|end| end as usize) {
+            largest[vertex] = largest[vertex].max(angle);
+            mean[vertex] = (mean[vertex].0 + angle, mean[vertex].1 + 1.0);
+        }
+    }
+    let mean = mean
+        .into_iter()
+        .map(|(sum, count)| if count > 0.0 { sum / count } else { 0.0 });
+    [largest, mean.collect()]
 }
 
 /// Places of values in increasing order, 0 to 1; equal values share the mean of theirs.
@@ -97,6 +223,16 @@ fn ranks(values: &[f64]) -> Vec<f64> {
         first += equal.len();
     }
     ranks
+}
+
+/// A key that falls as the value rises.
+fn decreasing(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value.is_sign_negative() {
+        bits
+    } else {
+        !bits & u64::MAX >> 1
+    }
 }
 
 /// Whether each vertex has a neighbour that is not too far.

@@ -3,6 +3,8 @@
 mod average;
 mod crop;
 mod editing;
+mod flow;
+mod mean_filter;
 mod noise;
 mod quantize;
 mod remesh;
@@ -16,6 +18,8 @@ mod warp;
 
 pub use average::average;
 pub use crop::crop;
+pub use flow::mean_curvature_flow;
+pub use mean_filter::mean_filter;
 pub use noise::noise;
 pub use quantize::quantize;
 pub use remesh::remesh;
@@ -23,6 +27,6 @@ pub use reorder::reorder;
 pub use resample::resample;
 pub use similarity::similarity;
 pub use simplify::{simplify, simplify_to};
-pub use smooth::{smooth, smooth_inside, taubin};
+pub use smooth::{bilaplacian, smooth, smooth_inside, taubin};
 pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};
 pub use warp::warp;

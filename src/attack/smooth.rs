@@ -42,6 +42,33 @@ pub fn taubin(mesh: &Mesh, lambda: f64, mu: f64, steps: u32) -> Mesh {
     mesh.with_positions(positions)
 }
 
+/// Moves every vertex by -`lambda` times its bilaplacian, `steps` times: the umbrella of the vertices' umbrellas, where an
+/// umbrella leads to the mean of the neighbours (Belyaev and Ohtake 2003). It flattens the change of curvature and not curvature,
+/// so it shrinks less. Stable for `lambda` up to 0.5. Vertices whose rings are not closed stay.
+pub fn bilaplacian(mesh: &Mesh, lambda: f64, steps: u32) -> Mesh {
+    let rings = Edges::new(mesh).rings(mesh.positions.len());
+    let mut positions = mesh.positions.clone();
+    for _ in 0..steps {
+        let twice = umbrellas(&umbrellas(&positions, &rings), &rings);
+        for (v, position) in positions.iter_mut().enumerate() {
+            if rings.is_closed(v) {
+                *position -= twice[v] * lambda;
+            }
+        }
+    }
+    mesh.with_positions(positions)
+}
+
+/// From each value to the mean of its neighbours'.
+fn umbrellas(values: &[DVec3], rings: &Rings) -> Vec<DVec3> {
+    let means = stepped(values, rings, 1.0, |_| true);
+    means
+        .iter()
+        .zip(values)
+        .map(|(mean, value)| mean - value)
+        .collect()
+}
+
 /// One step of all vertices at once.
 fn stepped(
     positions: &[DVec3],

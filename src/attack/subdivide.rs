@@ -1,4 +1,5 @@
-//! Subdivision, one round of each scheme. Boundary edges and edges of more than two faces are creases: they are divided at
+//! Subdivision, one round of each scheme. The V vertices of the mesh keep their indices, and the new ones follow: who knows V can
+//! trace any vertex. Boundary edges and edges of more than two faces are creases: they are divided at
 //! their middles, and all schemes but Loop's keep the vertices on them.
 
 use crate::mesh::Mesh;
@@ -91,7 +92,8 @@ pub fn sqrt3(mesh: &Mesh) -> Mesh {
 }
 
 /// Catmull and Clark's scheme (1978), `rounds` times, and its quads split into triangles: what a modelling program's
-/// "MeshSmooth" or "subdivision surface" makes of a triangle mesh. V' = V + E + F in each round.
+/// "MeshSmooth" or "subdivision surface" makes of a triangle mesh. V' = V + E + F in each round: the vertices, then a vertex for
+/// every edge, then one for every face.
 pub fn catmull_clark(mesh: &Mesh, rounds: u32) -> Mesh {
     if rounds == 0 {
         return mesh.clone();

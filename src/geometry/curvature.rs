@@ -75,25 +75,23 @@ pub fn curvature_integrals(mesh: &Mesh, rings: &Rings, normals: &[DVec3]) -> Cur
     let mut area = vec![0.0; num_vertices];
     for &triangle in &mesh.triangles {
         let corners = mesh.corners(triangle);
-        // By corner: the side across from it, and the cotangent of its angle.
-        let across = [0, 1, 2].map(|i| corners[(i + 2) % 3] - corners[(i + 1) % 3]);
-        let twice_area = across[0].cross(across[1]).length();
-        let dots = [0, 1, 2].map(|i| -across[(i + 1) % 3].dot(across[(i + 2) % 3]));
-        let cotangents = dots.map(|dot| cotangent(dot, twice_area));
+        let (sides, dots) = sides_and_dots(corners);
+        let twice_area = sides[0].cross(sides[1]).length();
+        let cotangents = cotangents(corners);
         let obtuse = dots.iter().position(|&dot| dot < 0.0);
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let vertex = triangle[i] as usize;
             gaussian[vertex] -= libm::atan2(twice_area, dots[i]);
-            flux[vertex] += across[k] * -cotangents[k] + across[j] * cotangents[j];
+            flux[vertex] += sides[j] * cotangents[j] - sides[k] * cotangents[k];
             area[vertex] += match obtuse {
-                None => {
-                    (across[j].length_squared() * cotangents[j]
-                        + across[k].length_squared() * cotangents[k])
-                        / 8.0
-                }
                 Some(at) if at == i => twice_area / 4.0,
                 Some(_) => twice_area / 8.0,
+                None if twice_area > 0.0 => {
+                    (sides[j].length_squared() * dots[j] + sides[k].length_squared() * dots[k])
+                        / (8.0 * twice_area)
+                }
+                None => 0.0,
             };
         }
     }
@@ -109,12 +107,31 @@ pub fn curvature_integrals(mesh: &Mesh, rings: &Rings, normals: &[DVec3]) -> Cur
     }
 }
 
-fn cotangent(dot: f64, cross: f64) -> f64 {
-    if dot.abs() < STEEPEST * cross {
-        dot / cross
-    } else {
-        STEEPEST.copysign(dot)
-    }
+/// The cotangents of a triangle's angles. Those of a thin triangle are all made smaller by one factor: its part of the Dirichlet
+/// energy stays positive.
+pub fn cotangents(corners: [DVec3; 3]) -> [f64; 3] {
+    let (sides, dots) = sides_and_dots(corners);
+    let longest = sides
+        .iter()
+        .map(|side| side.length_squared())
+        .fold(0.0, f64::max);
+    let twice_area = sides[0].cross(sides[1]).length().max(longest / STEEPEST);
+    dots.map(|dot| {
+        if twice_area > 0.0 {
+            dot / twice_area
+        } else {
+            0.0
+        }
+    })
+}
+
+/// By corner: the side across from it, and the product of the other two, seen from it.
+fn sides_and_dots(corners: [DVec3; 3]) -> ([DVec3; 3], [f64; 3]) {
+    let sides = [0, 1, 2].map(|i| corners[(i + 2) % 3] - corners[(i + 1) % 3]);
+    (
+        sides,
+        [0, 1, 2].map(|i| -sides[(i + 1) % 3].dot(sides[(i + 2) % 3])),
+    )
 }
 
 /// Fitting quadrics: in the tangent frame of each vertex, z = a x^2 + b xy + c y^2 + d x + e y through the vertex and, by least

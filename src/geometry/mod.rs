@@ -4,6 +4,7 @@ mod arc;
 mod curvature;
 mod dihedral;
 mod distortion;
+mod linear;
 mod normal;
 mod orientation;
 mod pose;
@@ -14,9 +15,12 @@ pub mod spectral;
 mod surface;
 
 pub use arc::refined;
-pub use curvature::{Curvature, CurvatureIntegrals, curvature_integrals, fitted_curvature};
+pub use curvature::{
+    Curvature, CurvatureIntegrals, cotangents, curvature_integrals, fitted_curvature,
+};
 pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
+pub use linear::conjugate_gradients;
 pub use normal::{face_areas, normal_deviations, vertex_normals};
 pub use orientation::outward;
 pub use pose::Pose;

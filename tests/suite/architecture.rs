@@ -57,7 +57,7 @@ const MAY_USE: [(&str, &[&str]); 19] = [
 ];
 
 /// Crates that only some rooms may use.
-const ONLY_IN: [(&[&str], &[&str]); 6] = [
+const ONLY_IN: [(&[&str], &[&str]); 7] = [
     (&["gltf", "serde_json", "base64"], &["document", "bin"]),
     (
         &["argon2", "hkdf", "siphasher", "unicode_normalization"],
@@ -70,6 +70,7 @@ const ONLY_IN: [(&[&str], &[&str]); 6] = [
         &["wasm"],
     ),
     (&["clap", "rpassword"], &["bin"]),
+    (&["nalgebra"], &["geometry"]),
 ];
 
 /// Every source file with the room it is in.

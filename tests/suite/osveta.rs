@@ -104,3 +104,38 @@ fn osveta_rejects_errors_of_topology() {
         );
     }
 }
+
+/// A dent is concave, a bump is not; together they are all that was ranked, each in its order.
+#[wasm_bindgen_test(unsupported = test)]
+fn osveta_splits_concave_from_convex() {
+    let mut sheet = shapes::terrain(12);
+    for p in &mut sheet.positions {
+        let hill = |x: f64| libm::exp(-60.0 * ((p.x - x) * (p.x - x) + (p.y - 0.5) * (p.y - 0.5)));
+        p.z = 0.2 * (hill(0.25) - hill(0.75));
+    }
+    let found = rank(&sheet, Ranking::Integrated);
+    let [concave, convex] = found.split(&sheet);
+    assert_eq!(concave.order.len() + convex.order.len(), found.order.len());
+    assert!(is_decreasing(&concave) && is_decreasing(&convex));
+    assert_eq!(concave.order[0], 6 * 13 + 9);
+    assert_eq!(convex.order[0], 6 * 13 + 3);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn osveta_does_not_mind_winding() {
+    let mesh = shapes::asteroid(20, 30);
+    let mut mixed = mesh.clone();
+    mixed
+        .triangles
+        .iter_mut()
+        .step_by(3)
+        .for_each(|triangle| triangle.swap(1, 2));
+    for ranking in Ranking::ALL {
+        assert_eq!(
+            rank(&mixed, ranking).order,
+            rank(&mesh, ranking).order,
+            "{}",
+            ranking.name()
+        );
+    }
+}

@@ -9,7 +9,7 @@ use super::address::{self, AddressKind, NEEDED_ADDRESSES, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Measurement, Owned, Ownership, STEP};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
-use crate::geometry::{Pose, diagonal, vertex_normals};
+use crate::geometry::{Pose, conjugate_gradients, diagonal, vertex_normals};
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 use glam::DVec3;
@@ -235,7 +235,7 @@ impl<'a> Linearization<'a> {
             y
         };
         let target = weighted(&mut goals.iter().map(|goal| goal.change));
-        let scaled = conjugate_gradients(normal, target);
+        let scaled = conjugate_gradients(normal, target, CG_TOLERANCE, CG_STEPS);
         scaled
             .iter()
             .zip(&self.units)
@@ -284,34 +284,4 @@ impl SparseRows {
         }
         sums
     }
-}
-
-/// Solves `A x = b` from `x = 0` for a symmetric positive definite `A` (Hestenes and Stiefel 1952).
-fn conjugate_gradients(apply: impl Fn(&[f64]) -> Vec<f64>, b: Vec<f64>) -> Vec<f64> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut x = vec![0.0; b.len()];
-    let mut residual = b;
-    let mut direction = residual.clone();
-    let mut square = dot(&residual, &residual);
-    let enough = CG_TOLERANCE * CG_TOLERANCE * square;
-    for _ in 0..CG_STEPS {
-        if square <= enough {
-            break;
-        }
-        let image = apply(&direction);
-        let length = square / dot(&direction, &image);
-        x.iter_mut()
-            .zip(&direction)
-            .for_each(|(x, d)| *x += length * d);
-        residual
-            .iter_mut()
-            .zip(&image)
-            .for_each(|(r, i)| *r -= length * i);
-        let previous = std::mem::replace(&mut square, dot(&residual, &residual));
-        direction
-            .iter_mut()
-            .zip(&residual)
-            .for_each(|(d, r)| *d = r + square / previous * *d);
-    }
-    x
 }

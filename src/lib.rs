@@ -37,6 +37,7 @@ mod order;
 mod progress;
 mod random;
 pub mod scene;
+pub mod study;
 mod watermark;
 
 #[cfg(target_arch = "wasm32")]

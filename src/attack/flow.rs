@@ -15,7 +15,7 @@ pub fn mean_curvature_flow(mesh: &Mesh, time: f64, steps: u32) -> Mesh {
     let rings = Edges::new(mesh).rings(mesh.positions.len());
     let mut flowing = mesh.clone();
     for _ in 0..steps {
-        let edge = mean_edge(&flowing);
+        let edge = flowing.mean_edge();
         let system = System::new(&flowing, time * edge * edge, |v| rings.is_closed(v));
         for axis in 0..3 {
             let values: Vec<f64> = flowing.positions.iter().map(|p| p[axis]).collect();
@@ -25,14 +25,6 @@ pub fn mean_curvature_flow(mesh: &Mesh, time: f64, steps: u32) -> Mesh {
         }
     }
     flowing
-}
-
-fn mean_edge(mesh: &Mesh) -> f64 {
-    let perimeters = mesh.triangles.iter().map(|&triangle| {
-        let [a, b, c] = mesh.corners(triangle);
-        a.distance(b) + b.distance(c) + c.distance(a)
-    });
-    perimeters.sum::<f64>() / (3 * mesh.triangles.len()).max(1) as f64
 }
 
 /// A + t L over the vertices that are free, scaled on both sides so that its diagonal is 1.

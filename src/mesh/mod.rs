@@ -37,6 +37,16 @@ impl Mesh {
         self.triangles.iter().map(double).sum::<f64>() * 0.5
     }
 
+    /// The mean length of a triangle's side, in scene units; 0 without triangles.
+    pub fn mean_edge(&self) -> f64 {
+        let perimeter = |&triangle: &[u32; 3]| {
+            let [a, b, c] = self.corners(triangle);
+            a.distance(b) + b.distance(c) + c.distance(a)
+        };
+        let perimeters = self.triangles.iter().map(perimeter);
+        perimeters.sum::<f64>() / (3 * self.triangles.len()).max(1) as f64
+    }
+
     /// The corners of a triangle.
     pub fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])

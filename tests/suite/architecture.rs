@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Each room, and all that it may use of the others.
-const MAY_USE: [(&str, &[&str]); 19] = [
+const MAY_USE: [(&str, &[&str]); 20] = [
     ("bits", &[]),
     ("digest", &[]),
     ("progress", &[]),
@@ -49,6 +49,21 @@ const MAY_USE: [(&str, &[&str]); 19] = [
             "scene",
             "carrier",
             "evidence",
+        ],
+    ),
+    (
+        "study",
+        &[
+            "attack",
+            "carrier",
+            "code",
+            "detection",
+            "geometry",
+            "key",
+            "mesh",
+            "order",
+            "random",
+            "watermark",
         ],
     ),
     ("wasm", &["*"]),

@@ -117,8 +117,8 @@ fn osveta_splits_concave_from_convex() {
     let [concave, convex] = found.split(&sheet);
     assert_eq!(concave.order.len() + convex.order.len(), found.order.len());
     assert!(is_decreasing(&concave) && is_decreasing(&convex));
-    assert_eq!(concave.order[0], 6 * 13 + 9);
-    assert_eq!(convex.order[0], 6 * 13 + 3);
+    assert_eq!(concave.order[0], 9 * 13 + 6);
+    assert_eq!(convex.order[0], 3 * 13 + 6);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

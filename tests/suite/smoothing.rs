@@ -145,11 +145,7 @@ fn smoothing_holds_borders_and_accepts_anything() {
 #[wasm_bindgen_test(unsupported = test)]
 fn smoothing_mean_curvature_flow_shrinks_a_sphere_as_it_must() {
     let sphere = shapes::icosphere(4);
-    let edges = sphere.triangles.iter().map(|&triangle| {
-        let [a, b, c] = sphere.corners(triangle);
-        a.distance(b) + b.distance(c) + c.distance(a)
-    });
-    let edge = edges.sum::<f64>() / (3 * sphere.triangles.len()) as f64;
+    let edge = sphere.mean_edge();
     for time in [1.0, 30.0] {
         let smoothed = mean_curvature_flow(&sphere, time, 1);
         let radius = 1.0 / (1.0 + 2.0 * time * edge * edge);

@@ -247,12 +247,8 @@ fn near(mesh: &Mesh, rings: &Rings) -> Vec<bool> {
             .map(|n| n.distance(position))
             .fold(f64::INFINITY, f64::min)
     };
-    let lengths = mesh.triangles.iter().flat_map(|&triangle| {
-        let [a, b, c] = mesh.corners(triangle);
-        [a.distance(b), b.distance(c), c.distance(a)]
-    });
-    let mean = lengths.sum::<f64>() / (3 * mesh.triangles.len()).max(1) as f64;
+    let limit = TOO_FAR * mesh.mean_edge();
     (0..mesh.positions.len())
-        .map(|v| nearest(v) <= TOO_FAR * mean)
+        .map(|v| nearest(v) <= limit)
         .collect()
 }

@@ -145,6 +145,14 @@ pub enum CarrierError {
         /// The exponent that a mark needs, in nats.
         needed: f64,
     },
+    /// Too few vertices for a code of fixed length.
+    #[error("the model has {available} vertices that can hold a text, and its code needs {needed}")]
+    TooFewHosts {
+        /// Vertices that the code needs.
+        needed: usize,
+        /// Vertices that there are.
+        available: usize,
+    },
     /// The caller asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -156,6 +164,7 @@ impl CarrierError {
         match self {
             CarrierError::TooFewAddresses { .. } => "carrier.too-few-addresses",
             CarrierError::TooWeak { .. } => "carrier.too-weak",
+            CarrierError::TooFewHosts { .. } => "carrier.too-few-hosts",
             CarrierError::Cancelled(_) => "aborted",
         }
     }

@@ -2,9 +2,14 @@
 
 mod check;
 mod convolutional;
+mod ldpc;
+pub mod run_length;
+mod text;
 
 pub use check::{CHECK_BITS, Checked};
 pub use convolutional::{Codeword, MESSAGE_BITS, decode};
+pub use ldpc::{Block, Decoded};
+pub use text::{TextCheck, TextError};
 
 /// What one address of a carrier says about the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -72,7 +72,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
 ];
 
 /// Crates that only some rooms may use.
-const ONLY_IN: [(&[&str], &[&str]); 7] = [
+const ONLY_IN: [(&[&str], &[&str]); 8] = [
     (&["gltf", "serde_json", "base64"], &["document", "bin"]),
     (
         &["argon2", "hkdf", "siphasher", "unicode_normalization"],
@@ -86,6 +86,7 @@ const ONLY_IN: [(&[&str], &[&str]); 7] = [
     ),
     (&["clap", "rpassword"], &["bin"]),
     (&["nalgebra"], &["geometry"]),
+    (&["labrador_ldpc"], &["code"]),
 ];
 
 /// Every source file with the room it is in.

@@ -8,6 +8,7 @@ wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
 
 mod architecture;
 mod attack;
+mod chain;
 mod code;
 mod curvature;
 mod detection;

@@ -1,0 +1,299 @@
+//! Hosts without an order, the mended blind way: the direction of a vertex from the centroid of the enclosed volume tells
+//! which bit it holds, so a vertex that is lost, or that comes in between, costs energy and nothing else.
+//!
+//! The sphere of directions is cut into five cells for each bit of a codeword, which the key distributes. Every vertex is moved
+//! along its ray to the nearest point of its bit's quantizer, shifted by its cell's own keyed dither. A detector sums sines of the
+//! phases of a bit's vertices. It tries what the frame leaves open: the signs of its axes, and the scale by 2 %.
+//!
+//! Where distances hardly differ, a scale that is wrong by half a step turns all bits over, and the complement of a
+//! codeword is a codeword. No dither tells the two apart, for it moves both: what reads a message must try both against check
+//! bits.
+
+use super::hosts::TURNS;
+use super::sparse_qim::{quantize, unit};
+use super::spherical::frame;
+use crate::carrier::CarrierError;
+use crate::code::{Block, Decoded};
+use crate::detection::Statistic;
+use crate::key::Key;
+use crate::mesh::Mesh;
+use crate::order::order_by;
+use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// Cells of a bit.
+const REPETITIONS: usize = 5;
+
+/// Scales that are tried: 1 - 2 % to 1 + 2 %.
+const SCALES: u32 = 81;
+const LEAST_SCALE: f64 = 0.98;
+const SCALE_STEP: f64 = 5e-4;
+
+/// Ways of reading whose words are decoded.
+const CANDIDATES: usize = 6;
+
+/// Words that are read from a mesh: in each of four turns and at each scale one, and its complement.
+pub const NUM_TESTS: u32 = 4 * SCALES * 2;
+
+/// A vertex nearer than this to its cell's border, as a chord of the unit sphere with 640 cells, counts less.
+const MARGIN: f64 = 0.02;
+
+/// Vertices that a bit needs to stand more than rounding.
+const VERTICES_PER_BIT: usize = 16;
+
+/// Evidence of one bit is cut off here.
+const MOST: f64 = 12.0;
+
+/// What embedder and detector agree on.
+pub struct Cells {
+    block: Block,
+    /// Of the quantizers, in units of the frame.
+    step: f64,
+    /// Unit vectors, descending along z.
+    directions: Vec<DVec3>,
+    /// The bit of each cell.
+    bits: Vec<u32>,
+    /// The dither of each cell, in steps.
+    dithers: Vec<f64>,
+}
+
+/// One way of reading a suspect.
+#[derive(Clone, Debug)]
+pub struct CellReading {
+    /// Evidence `ln P(0) / P(1)` of every bit of the codeword.
+    pub evidence: Vec<f64>,
+    /// What the code made of it.
+    pub decoded: Decoded,
+    /// The bit of each cell, its value (positive for a 0), and what the value could be at most.
+    cells: Vec<(u32, f64, f64)>,
+}
+
+/// A vertex in the frame.
+struct Ray {
+    /// Distance from the centroid, in units of the frame.
+    radius: f64,
+    direction: DVec3,
+}
+
+/// The cell and the weight (0 to 1) of every vertex.
+struct View(Vec<(u32, f64)>);
+
+impl Cells {
+    /// The cells of a key for a code, and a step in units of the frame.
+    pub fn new(key: &Key, block: Block, step: f64) -> Cells {
+        let count = REPETITIONS * block.code_bits();
+        let address = |cell: usize| ((count as u64) << 32) | cell as u64;
+        let (places, dithers) = (key.prf("cells/place"), key.prf("cells/dither"));
+        let shuffled = order_by((0..count).map(|cell| places.at(address(cell)).0));
+        let mut bits = vec![0; count];
+        for (place, &(_, cell)) in shuffled.iter().enumerate() {
+            bits[cell as usize] = (place / REPETITIONS) as u32;
+        }
+        let dither = |cell| unit(dithers.at(address(cell)).0);
+        Cells {
+            block,
+            step,
+            directions: spiral(count),
+            bits,
+            dithers: (0..count).map(dither).collect(),
+        }
+    }
+
+    /// The longest block that a number of vertices carries.
+    pub fn capacity(num_vertices: usize) -> Option<Block> {
+        let fits = |block: &Block| VERTICES_PER_BIT * block.code_bits() <= num_vertices;
+        Block::ALL.into_iter().rev().find(fits)
+    }
+
+    /// The displacement of all V vertices that writes a message.
+    pub fn embed(&self, mesh: &Mesh, message: &[u8]) -> Result<Vec<DVec3>, CarrierError> {
+        let pose = frame(mesh).ok_or(CarrierError::TooFewHosts {
+            needed: VERTICES_PER_BIT * self.block.code_bits(),
+            available: 0,
+        })?;
+        let word = self.block.encode(message);
+        let displacement = |&position: &DVec3| {
+            let ray = Ray::new(pose.canonical(position));
+            let (cell, _) = self.cell(ray.direction);
+            let dither = self.dithers[cell] * self.step;
+            let bit = word[self.bits[cell] as usize];
+            let radius = quantize(ray.radius - dither, bit, self.step) + dither;
+            pose.axes * ray.direction * ((radius - ray.radius) * pose.size)
+        };
+        Ok(mesh.positions.iter().map(displacement).collect())
+    }
+
+    /// The ways of reading a mesh that stand out most, each decoded; none without a frame.
+    pub fn read(&self, mesh: &Mesh) -> Vec<CellReading> {
+        let Some(pose) = frame(mesh) else {
+            return Vec::new();
+        };
+        let points = mesh.positions.iter().map(|&p| pose.canonical(p));
+        let rays: Vec<Ray> = points.map(Ray::new).collect();
+        let views = TURNS.map(|turn| self.view(&rays, turn));
+        let mut peaks = Vec::new();
+        for (energies, view) in self.scan(&rays, &views).iter().zip(&views) {
+            let scales: Vec<f64> = scales().collect();
+            for (number, &scale) in scales.iter().enumerate() {
+                let near = &energies[number.saturating_sub(1)..(number + 2).min(energies.len())];
+                if near.iter().all(|&other| other <= energies[number]) {
+                    peaks.push((energies[number], scale, view));
+                }
+            }
+        }
+        peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best = peaks.iter().take(CANDIDATES);
+        best.map(|&(_, scale, view)| self.reading(&self.phasors(&rays, scale), view))
+            .collect()
+    }
+
+    /// The energy of the bits, by turn and scale.
+    fn scan(&self, rays: &[Ray], views: &[View; 4]) -> [Vec<f64>; 4] {
+        let mut phasors = self.phasors(rays, LEAST_SCALE);
+        let steps = self.phasors(rays, SCALE_STEP);
+        let mut energies = [const { Vec::new() }; 4];
+        for _ in scales() {
+            for (energies, view) in energies.iter_mut().zip(views) {
+                let values = self.values(&self.sums(&phasors, view));
+                let bits = self.bits_of(&values, view);
+                energies.push(bits.iter().map(|z| z * z).sum());
+            }
+            let turned = phasors.iter_mut().zip(&steps);
+            turned.for_each(|(phasor, step)| *phasor = step.rotate(*phasor));
+        }
+        energies
+    }
+
+    fn reading(&self, phasors: &[DVec2], view: &View) -> CellReading {
+        let sums = self.sums(phasors, view);
+        let values = self.values(&sums);
+        let clip = |z: &f64| (2.0 * z).clamp(-MOST, MOST);
+        let evidence: Vec<f64> = self.bits_of(&values, view).iter().map(clip).collect();
+        let cells = self.bits.iter().zip(values).zip(&sums);
+        CellReading {
+            decoded: self.block.decode(&evidence),
+            evidence,
+            cells: cells
+                .map(|((&bit, value), sum)| (bit, value, sum.length()))
+                .collect(),
+        }
+    }
+
+    /// The cells and weights of rays that are turned.
+    fn view(&self, rays: &[Ray], turn: DVec3) -> View {
+        let margin = MARGIN * (640.0 / self.directions.len() as f64).sqrt();
+        let place = |ray: &Ray| {
+            let (cell, apart) = self.cell(ray.direction * turn);
+            (cell as u32, (apart / margin).min(1.0))
+        };
+        View(rays.iter().map(place).collect())
+    }
+
+    /// Each ray's phase in the quantizer, as a unit vector.
+    fn phasors(&self, rays: &[Ray], scale: f64) -> Vec<DVec2> {
+        let phasor = |ray: &Ray| {
+            let (sine, cosine) = libm::sincos(TAU * (scale * ray.radius / self.step));
+            DVec2::new(cosine, sine)
+        };
+        rays.iter().map(phasor).collect()
+    }
+
+    /// The weighted sum of phasors in each cell.
+    fn sums(&self, phasors: &[DVec2], view: &View) -> Vec<DVec2> {
+        let mut sums = vec![DVec2::ZERO; self.directions.len()];
+        for (phasor, &(cell, weight)) in phasors.iter().zip(&view.0) {
+            sums[cell as usize] += *phasor * weight;
+        }
+        sums
+    }
+
+    /// What each cell says of its bit: minus the sine of its phase less the dither, positive for a 0.
+    fn values(&self, sums: &[DVec2]) -> Vec<f64> {
+        let value = |(sum, dither): (&DVec2, &f64)| {
+            let (sine, cosine) = libm::sincos(TAU * dither);
+            sum.x * sine - sum.y * cosine
+        };
+        sums.iter().zip(&self.dithers).map(value).collect()
+    }
+
+    /// The values of the bits, in units of their standard deviation where nothing was written.
+    fn bits_of(&self, values: &[f64], view: &View) -> Vec<f64> {
+        let mut totals = vec![0.0; self.block.code_bits()];
+        for (&bit, value) in self.bits.iter().zip(values) {
+            totals[bit as usize] += value;
+        }
+        let mut energies = vec![0.0; totals.len()];
+        for &(cell, weight) in &view.0 {
+            energies[self.bits[cell as usize] as usize] += weight * weight;
+        }
+        let normalized = |(total, energy): (f64, f64)| total / (0.5 * energy + 1e-9).sqrt();
+        totals.into_iter().zip(energies).map(normalized).collect()
+    }
+
+    /// The cell of a direction, and how much nearer its centre is than any other, as chords. Centres lie in order of z.
+    fn cell(&self, direction: DVec3) -> (usize, f64) {
+        let centres = &self.directions;
+        let middle = centres.partition_point(|centre| centre.z > direction.z);
+        let (mut best, mut nearest, mut second) = (0, f64::INFINITY, f64::INFINITY);
+        let mut visit = |cell: usize| {
+            let rise = centres[cell].z - direction.z;
+            if rise * rise >= second {
+                return false;
+            }
+            let square = centres[cell].distance_squared(direction);
+            if square < nearest {
+                (best, nearest, second) = (cell, square, nearest);
+            } else {
+                second = second.min(square);
+            }
+            true
+        };
+        let (mut above, mut below) = (middle, middle);
+        let (mut goes_up, mut goes_down) = (true, true);
+        while goes_up || goes_down {
+            goes_up = goes_up && above > 0 && visit(above - 1);
+            above -= usize::from(goes_up);
+            goes_down = goes_down && below < centres.len() && visit(below);
+            below += usize::from(goes_down);
+        }
+        (best, second.sqrt() - nearest.sqrt())
+    }
+}
+
+impl CellReading {
+    /// How surprising it is that the cells agree with a codeword. Where the key had no part in making the mesh, each dither is
+    /// uniform, whatever the mesh: the terms are as [`Statistic`] asks for.
+    pub fn statistic(&self, word: &[bool]) -> Statistic {
+        Statistic::new(self.cells.iter().map(|&(bit, value, most)| {
+            let is_one = word.get(bit as usize).is_some_and(|&bit| bit);
+            (if is_one { -value } else { value }, most)
+        }))
+    }
+}
+
+impl Ray {
+    fn new(point: DVec3) -> Ray {
+        Ray {
+            radius: point.length(),
+            direction: point.normalize_or(DVec3::Z),
+        }
+    }
+}
+
+/// The scales that are tried.
+fn scales() -> impl Iterator<Item = f64> {
+    (0..SCALES).map(|number| LEAST_SCALE + SCALE_STEP * f64::from(number))
+}
+
+/// Directions that cover the sphere evenly: a Fibonacci spiral, descending along z.
+fn spiral(count: usize) -> Vec<DVec3> {
+    let turn = PI * (1.0 + 5f64.sqrt());
+    let direction = |number: usize| {
+        let place = number as f64 + 0.5;
+        let z = 1.0 - 2.0 * place / count as f64;
+        let (sine, cosine) = libm::sincos(turn * place);
+        let radius = (1.0 - z * z).sqrt();
+        DVec3::new(radius * cosine, radius * sine, z)
+    };
+    (0..count).map(direction).collect()
+}

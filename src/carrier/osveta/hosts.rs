@@ -1,0 +1,99 @@
+//! Three ways to find the hosts again: by their indices, by ranking again, by the original.
+
+use super::chain::{Chain, Received};
+use super::spherical::{Spherical, frame};
+use super::stability::{Ranking, rank};
+use crate::geometry::{Pose, Surface};
+use crate::mesh::Mesh;
+use glam::{DMat3, DVec3};
+
+/// Half turns about the axes of a frame: what its axes' signs leave open.
+pub(super) const TURNS: [DVec3; 4] = [
+    DVec3::new(1.0, 1.0, 1.0),
+    DVec3::new(1.0, -1.0, -1.0),
+    DVec3::new(-1.0, 1.0, -1.0),
+    DVec3::new(-1.0, -1.0, 1.0),
+];
+
+/// Vertices by which turns of an original are compared.
+const SAMPLES: usize = 400;
+
+/// Rounds of the search for the point of a surface in a direction.
+const ROUNDS: usize = 30;
+
+impl Chain<'_> {
+    /// The paper's way: where each host went is known. `hosts` gives its index in the suspect, in the order of embedding; `None`
+    /// for those that are lost.
+    pub fn read_traced(
+        &self,
+        suspect: &Mesh,
+        hosts: &[Option<u32>],
+        step: f64,
+    ) -> Option<Received> {
+        let spherical = Spherical::of(suspect, self.barycentre)?;
+        let point = |host: &Option<u32>| suspect.positions.get((*host)? as usize).copied();
+        Some(self.read(&spherical, hosts.iter().map(point), step))
+    }
+
+    /// The blind way of the paper: the suspect's own ranking is taken for that of the host mesh. It is not: the mark itself
+    /// changes the order, and a permutation is nothing that a code against losses and gains could mend.
+    pub fn read_ranked(&self, suspect: &Mesh, ranking: Ranking, step: f64) -> Option<Received> {
+        let hosts: Vec<Option<u32>> = rank(suspect, ranking).order.into_iter().map(Some).collect();
+        self.read_traced(suspect, &hosts, step)
+    }
+
+    /// Eq. 1 with k = c || k': the original and its hosts are given. The suspect is turned, scaled and moved to lie as the original
+    /// does, by the frames of both, and each host's distance is where the suspect's surface is in the host's direction.
+    pub fn read_with_original(
+        &self,
+        suspect: &Mesh,
+        original: &Mesh,
+        hosts: &[u32],
+        step: f64,
+    ) -> Option<Received> {
+        let spherical = Spherical::of(original, self.barycentre)?;
+        let aligned = aligned(suspect, original)?;
+        let surface = Surface::new(&aligned);
+        let point = |&host: &u32| {
+            let &from = original.positions.get(host as usize)?;
+            in_direction(&surface, &spherical, from)
+        };
+        Some(self.read(&spherical, hosts.iter().map(point), step))
+    }
+}
+
+/// The suspect where the original is: of the four ways in which frames fit, the one in which the original's vertices are nearest.
+fn aligned(suspect: &Mesh, original: &Mesh) -> Option<Mesh> {
+    let (from, to) = (frame(suspect)?, frame(original)?);
+    let every = original.positions.len().div_ceil(SAMPLES).max(1);
+    let distance = |mesh: &Mesh| {
+        let surface = Surface::new(mesh);
+        let samples = original.positions.iter().step_by(every);
+        let nearest = samples.filter_map(|&point| Some(surface.nearest(point)?.distance));
+        nearest.sum::<f64>()
+    };
+    let turned = TURNS.map(|turn| moved(suspect, &from, &to, turn));
+    let candidates = turned.into_iter().map(|mesh| (distance(&mesh), mesh));
+    candidates
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, mesh)| mesh)
+}
+
+fn moved(mesh: &Mesh, from: &Pose, to: &Pose, turn: DVec3) -> Mesh {
+    let linear = to.axes * DMat3::from_diagonal(turn) * from.axes.transpose();
+    let linear = linear * (to.size / from.size);
+    let place = |&p: &DVec3| to.centre + linear * (p - from.centre);
+    mesh.with_positions(mesh.positions.iter().map(place).collect())
+}
+
+/// The point of a surface in the direction of a point near it: alternately the nearest of the surface and the nearest of the ray.
+fn in_direction(surface: &Surface, spherical: &Spherical, from: DVec3) -> Option<DVec3> {
+    let direction = (from - spherical.origin).try_normalize()?;
+    let mut at = from;
+    for _ in 0..ROUNDS {
+        let nearest = surface.nearest(at)?;
+        let along = (nearest.point - spherical.origin).dot(direction);
+        at = spherical.origin + direction * along;
+    }
+    Some(at)
+}

@@ -1,0 +1,81 @@
+//! Sparse quantization index modulation: equations 5 to 7 of Vasic 2012, with a keyed projection and a keyed dither, and soft
+//! output.
+
+use crate::key::{Key, Prf};
+use std::f64::consts::TAU;
+
+/// Standard deviation of what disturbs a projection, in steps.
+const DISTURBANCE: f64 = 0.125;
+
+/// Eq. 5: the point of the quantizer of a bit that is nearest to `x`. The nominal quantizer's points, the multiples of the
+/// step, are moved up by a quarter of it for a 1 and down for a 0.
+pub fn quantize(x: f64, bit: bool, step: f64) -> f64 {
+    let offset = if bit { 0.25 * step } else { -0.25 * step };
+    step * ((x - offset) / step).round() + offset
+}
+
+/// Spreads each symbol over L elements of a vector, by a unit vector that the key chooses for that symbol.
+pub struct SparseQim {
+    projections: Prf,
+    dithers: Prf,
+    elements: usize,
+    step: f64,
+}
+
+impl SparseQim {
+    /// Quantizers with a step for symbols of `elements` elements; both in the elements' unit.
+    pub fn new(key: &Key, elements: usize, step: f64) -> SparseQim {
+        SparseQim {
+            projections: key.prf("osveta/projection"),
+            dithers: key.prf("osveta/dither"),
+            elements,
+            step,
+        }
+    }
+
+    /// Eq. 6: `y = x + (Q_u(x.p) - x.p) p` for the elements of a symbol that is to hold a bit.
+    pub fn embed(&self, x: &[f64], symbol: usize, bit: bool) -> Vec<f64> {
+        let p = self.projection(symbol);
+        let projected = dot(x, &p);
+        let dither = self.dither(symbol);
+        let moved = quantize(projected - dither, bit, self.step) + dither - projected;
+        x.iter().zip(&p).map(|(x, p)| x + moved * p).collect()
+    }
+
+    /// Eq. 7, softly: `ln P(0) / P(1)` of a symbol whose elements were received as `r`, under Gaussian disturbance. Its sign is
+    /// the bit with the nearest point: negative for a 1.
+    pub fn evidence(&self, r: &[f64], symbol: usize) -> f64 {
+        let projected = dot(r, &self.projection(symbol)) - self.dither(symbol);
+        let [zero, one] = [false, true].map(|bit| {
+            let error = (projected - quantize(projected, bit, self.step)) / self.step;
+            error * error
+        });
+        (one - zero) / (2.0 * DISTURBANCE * DISTURBANCE)
+    }
+
+    /// The unit vector p of a symbol: independent normal numbers (Box and Muller 1958), brought to length 1.
+    fn projection(&self, symbol: usize) -> Vec<f64> {
+        let normal = |element: usize| {
+            let address = symbol * self.elements + element;
+            let (a, b) = self.projections.at(address as u64);
+            let radius = (-2.0 * libm::log(1.0 - unit(a))).sqrt();
+            radius * libm::cos(TAU * unit(b))
+        };
+        let vector: Vec<f64> = (0..self.elements).map(normal).collect();
+        let length = dot(&vector, &vector).sqrt();
+        vector.iter().map(|element| element / length).collect()
+    }
+
+    fn dither(&self, symbol: usize) -> f64 {
+        unit(self.dithers.at(symbol as u64).0) * self.step
+    }
+}
+
+/// Uniform in [0, 1).
+pub(super) fn unit(random: u64) -> f64 {
+    (random >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,507 @@
+//! The chain of texts: codes, runs, sparse QIM, hosts and cells. Sections and equations are those of Vasic 2012.
+
+use crate::support::fixtures::{asteroid, key};
+use glam::DVec3;
+use meshmark::attack::{catmull_clark, noise, reorder, similarity, simplify};
+use meshmark::carrier::osveta::{
+    Barycentre, Cells, Chain, Embedded, Ranking, SparseQim, Spherical, cells, quantize, rank,
+};
+use meshmark::code::run_length::{self, Channel};
+use meshmark::code::{Block, TextCheck, TextError};
+use meshmark::detection::{LN_P_FOUND, union};
+use meshmark::geometry::Distortion;
+use meshmark::mesh::{Mesh, shapes};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+const CLEAN: Channel = Channel {
+    insertion: 0.0,
+    deletion: 0.0,
+};
+
+/// Uniform in [0, 1).
+fn random(address: u64) -> f64 {
+    key(7).prf("test").at(address).0 as f64 / 2f64.powi(64)
+}
+
+fn bits(text: &str) -> Vec<bool> {
+    text.bytes()
+        .filter(|byte| *byte != b' ')
+        .map(|byte| byte == b'1')
+        .collect()
+}
+
+/// Evidence of symbols that arrived for sure.
+fn sure(symbols: &[bool]) -> Vec<f64> {
+    let soft = |&symbol: &bool| if symbol { -20.0 } else { 20.0 };
+    symbols.iter().map(soft).collect()
+}
+
+fn signs(evidence: &[f64]) -> Vec<bool> {
+    evidence.iter().map(|&value| value < 0.0).collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn section_3b_maps_bits_to_runs() {
+    assert_eq!(
+        run_length::encode(&bits("011011")),
+        bits("11 000 111 00 111 000")
+    );
+    assert!(run_length::encode(&[]).is_empty());
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn section_3b_runs_are_cut_again() {
+    let sent = bits("0110100011101");
+    let symbols = sure(&run_length::encode(&sent));
+    assert_eq!(
+        signs(&run_length::decode(&symbols, sent.len(), CLEAN)),
+        sent
+    );
+    let longer = [symbols, vec![20.0, -20.0, 20.0]].concat();
+    assert_eq!(
+        signs(&run_length::decode(&longer, sent.len(), CLEAN)),
+        sent,
+        "symbols after the last run say nothing"
+    );
+}
+
+/// A run that lost a symbol or gained one leaves all the others in their places.
+#[wasm_bindgen_test(unsupported = test)]
+fn section_3b_losses_and_gains_cost_a_run_at_most() {
+    let channel = Channel {
+        insertion: 0.02,
+        deletion: 0.02,
+    };
+    let sent = bits("01101000111010010110");
+    let symbols = run_length::encode(&sent);
+    for place in 0..symbols.len() {
+        let (mut lost, mut gained) = (symbols.clone(), symbols.clone());
+        lost.remove(place);
+        gained.insert(place, symbols[place]);
+        for received in [lost, gained] {
+            let read = signs(&run_length::decode(&sure(&received), sent.len(), channel));
+            let wrong = read.iter().zip(&sent).filter(|(a, b)| a != b).count();
+            assert!(wrong <= 2, "{wrong} wrong at {place}");
+        }
+    }
+}
+
+/// Forward-backward against the sum over all bits and all ways of cutting.
+#[wasm_bindgen_test(unsupported = test)]
+fn section_3b_decoder_is_exact() {
+    const BITS: usize = 3;
+    for (case, &(insertion, deletion)) in [(0.0, 0.0), (0.1, 0.2), (0.3, 0.05)].iter().enumerate() {
+        let channel = Channel {
+            insertion,
+            deletion,
+        };
+        let soft: Vec<f64> = (0..8)
+            .map(|place| 4.0 * random(100 * case as u64 + place) - 2.0)
+            .collect();
+        let decoded = run_length::decode(&soft, BITS, channel);
+        for (bit, decoded) in decoded.iter().enumerate() {
+            let mut totals = [0.0; 2];
+            for word in 0..1usize << BITS {
+                let sent: Vec<bool> = (0..BITS).map(|bit| word >> bit & 1 == 1).collect();
+                totals[usize::from(sent[bit])] += likelihood(&soft, &sent, true, channel);
+            }
+            let expected = libm::log(totals[0] / totals[1]);
+            assert!((decoded - expected).abs() < 1e-9, "{decoded} {expected}");
+        }
+    }
+}
+
+/// Likelihood of received symbols for what is left to send, every way of cutting them in turn.
+fn likelihood(soft: &[f64], sent: &[bool], level: bool, channel: Channel) -> f64 {
+    let Some((&bit, rest)) = sent.split_first() else {
+        return 1.0;
+    };
+    let mut total = 0.0;
+    let mut run = 1.0;
+    for arrived in 0..=soft.len().min(7) {
+        if arrived > 0 {
+            let one = 2.0 / (1.0 + libm::exp(soft[arrived - 1]));
+            run *= if level { one } else { 2.0 - one };
+        }
+        let length = if bit { 3 } else { 2 };
+        let arrives = arrivals(length, arrived, channel);
+        total += run * arrives * likelihood(&soft[arrived..], rest, !level, channel);
+    }
+    total
+}
+
+/// Probability that `sent` symbols arrive as `arrived`: the first as any number of them.
+fn arrivals(sent: usize, arrived: usize, channel: Channel) -> f64 {
+    if sent == 0 {
+        return if arrived == 0 { 1.0 } else { 0.0 };
+    }
+    let first = |copies: usize| match copies {
+        0 => channel.deletion,
+        _ => {
+            let further = channel.insertion.powf((copies - 1) as f64);
+            (1.0 - channel.deletion) * (1.0 - channel.insertion) * further
+        }
+    };
+    (0..=arrived)
+        .map(|copies| first(copies) * arrivals(sent - 1, arrived - copies, channel))
+        .sum()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn run_length_survives_nothing_and_nonsense() {
+    assert_eq!(run_length::decode(&[], 3, CLEAN), [0.0; 3]);
+    let nonsense = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0];
+    let decoded = run_length::decode(&nonsense, 2, CLEAN);
+    assert!(decoded.iter().all(|value| value.is_finite()), "{decoded:?}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn ldpc_corrects_noise_and_erasures() {
+    for block in Block::ALL {
+        let message: Vec<u8> = (0..block.message_bytes() as u8)
+            .map(|i| i.wrapping_mul(37))
+            .collect();
+        let word = block.encode(&message);
+        assert_eq!(word.len(), block.code_bits());
+        // Signs with a fifth erased, and noise of 0.6 of the signal.
+        let received: Vec<f64> = (0u64..)
+            .zip(&word)
+            .map(|(place, &bit)| {
+                let noise = (0..12).map(|i| random(1000 * place + i)).sum::<f64>() - 6.0;
+                let signal = if bit { -1.0 } else { 1.0 };
+                if place % 5 == 0 {
+                    0.0
+                } else {
+                    signal + 0.6 * noise
+                }
+            })
+            .collect();
+        let decoded = block.decode(&received);
+        assert!(decoded.is_codeword);
+        assert_eq!(decoded.message, message, "{block:?}");
+        let inverted: Vec<f64> = received.iter().map(|value| -value).collect();
+        let complement: Vec<u8> = message.iter().map(|byte| !byte).collect();
+        let decoded = block.decode(&inverted);
+        assert!(decoded.is_codeword, "the complement of a codeword is one");
+        assert_eq!(decoded.message, complement);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn ldpc_says_when_it_found_nothing() {
+    let found = |seed: u64| {
+        let noise = |place| 2.0 * random(500 * seed + place) - 1.0;
+        let received: Vec<f64> = (0..256).map(noise).collect();
+        Block::Tc256.decode(&received).is_codeword
+    };
+    assert_eq!((0..20).filter(|&seed| found(seed)).count(), 0);
+    let decoded = Block::Tc128.decode(&[f64::NAN, f64::INFINITY]);
+    assert_eq!(decoded.message.len(), 8);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn text_check_knows_its_key_and_its_text() {
+    let check = TextCheck::new(&key(1));
+    for text in ["a", "Grüße", "© Ada Lovelace 1843, London"] {
+        let block = Block::for_text(text).unwrap();
+        let message = check.message(text, block).unwrap();
+        assert_eq!(message.len(), block.message_bytes());
+        assert_eq!(check.text(&message).as_deref(), Some(text));
+        assert_eq!(TextCheck::new(&key(2)).text(&message), None);
+        for bit in 0..8 * message.len() {
+            let mut other = message.clone();
+            other[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(check.text(&other), None, "bit {bit} of {text}");
+        }
+        let complement: Vec<u8> = message.iter().map(|byte| !byte).collect();
+        assert_eq!(check.text(&complement), None);
+    }
+    assert_eq!(Block::for_text("12345"), Ok(Block::Tc128));
+    assert_eq!(Block::for_text("123456"), Ok(Block::Tc256));
+    assert_eq!(Block::for_text("12345678901234"), Ok(Block::Tc512));
+    assert_eq!(check.text(&[]), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn text_that_does_not_fit_is_refused() {
+    let check = TextCheck::new(&key(1));
+    assert_eq!(Block::for_text(""), Err(TextError::Empty));
+    assert_eq!(Block::for_text("a\0b"), Err(TextError::Nul));
+    let error = Block::for_text(&"x".repeat(30)).unwrap_err();
+    assert_eq!(error.code(), "text.too-long");
+    let error = check.message("123456", Block::Tc128).unwrap_err();
+    let (bytes, capacity) = (6, 5);
+    assert_eq!(error, TextError::TooLong { bytes, capacity });
+}
+
+/// Q_u(x) = D [(x - (-1)^(u+1) D/4) / D] + (-1)^(u+1) D/4.
+#[wasm_bindgen_test(unsupported = test)]
+fn equation_5_quantizes_to_a_quarter_above_or_below() {
+    let step = 0.8;
+    for place in 0..200 {
+        let x = 10.0 * random(place) - 5.0;
+        for (bit, offset) in [(false, -0.2), (true, 0.2)] {
+            let y = quantize(x, bit, step);
+            assert!((y - x).abs() <= 0.4 + 1e-12, "no farther than half a step");
+            let level = (y - offset) / step;
+            assert!((level - level.round()).abs() < 1e-9, "{y} for {bit}");
+            assert_eq!(quantize(y, bit, step), y);
+        }
+    }
+    assert_eq!(quantize(0.0, true, 1.0), 0.25, "up for a 1");
+    assert_eq!(quantize(0.0, false, 1.0), -0.25, "down for a 0");
+}
+
+/// y = x + (Q_u(x.p) - x.p) p.
+#[wasm_bindgen_test(unsupported = test)]
+fn equation_6_moves_along_a_keyed_unit_vector() {
+    let qim = SparseQim::new(&key(3), 3, 0.1);
+    let mut moves = Vec::new();
+    for symbol in 0..50 {
+        let x: Vec<f64> = (0..3).map(|i| random(3 * symbol + i)).collect();
+        let [zero, one] = [false, true].map(|bit| {
+            let y = qim.embed(&x, symbol as usize, bit);
+            let again = qim.embed(&y, symbol as usize, bit);
+            assert!(y.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-12));
+            DVec3::from_slice(&y) - DVec3::from_slice(&x)
+        });
+        assert!(zero.length() <= 0.05 + 1e-12 && one.length() <= 0.05 + 1e-12);
+        assert!(
+            zero.cross(one).length() < 1e-12,
+            "both along p: {zero} {one}"
+        );
+        let apart = (zero - one).length() / 0.05;
+        assert!((apart - apart.round()).abs() < 1e-9 && apart.round() % 2.0 == 1.0);
+        moves.push((zero - one).normalize());
+    }
+    let mean: DVec3 = moves.iter().sum::<DVec3>() / 50.0;
+    assert!(mean.length() < 0.4, "p is another for every symbol: {mean}");
+}
+
+/// u = argmin |r.p - Q_u(r.p)|.
+#[wasm_bindgen_test(unsupported = test)]
+fn equation_7_recovers_the_bit() {
+    let (qim, other) = (
+        SparseQim::new(&key(3), 3, 0.1),
+        SparseQim::new(&key(4), 3, 0.1),
+    );
+    let mut strangers = 0;
+    for symbol in 0..200 {
+        let bit = random(9000 + symbol) < 0.5;
+        let x: Vec<f64> = (0..3).map(|i| random(3 * symbol + i)).collect();
+        let y = qim.embed(&x, symbol as usize, bit);
+        let evidence = qim.evidence(&y, symbol as usize);
+        assert_eq!(evidence < 0.0, bit, "the offsets of eq. 5 agree in both");
+        assert!((evidence.abs() - 8.0).abs() < 1e-6, "{evidence}");
+        // Disturbed by less than a quarter of a step, along whatever direction.
+        let disturbed: Vec<f64> = y.iter().map(|y| y + 0.024 / 3f64.sqrt()).collect();
+        let evidence = qim.evidence(&disturbed, symbol as usize);
+        assert_eq!(evidence < 0.0, bit);
+        strangers += usize::from((other.evidence(&y, symbol as usize) < 0.0) == bit);
+    }
+    assert!((70..130).contains(&strangers), "{strangers}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn spherical_coordinates_follow_a_similarity() {
+    let mesh = asteroid();
+    let turned = similarity(&mesh, 5);
+    for barycentre in [Barycentre::Vertices, Barycentre::Area, Barycentre::Volume] {
+        let [a, b] = [&mesh, &turned].map(|mesh| Spherical::of(mesh, barycentre).unwrap());
+        for (p, q) in mesh.positions.iter().zip(&turned.positions) {
+            assert!((a.radius(*p) - b.radius(*q)).abs() < 1e-9, "{barycentre:?}");
+            assert!(a.at_radius(*p, a.radius(*p)).distance(*p) < 1e-12);
+        }
+    }
+    assert_eq!(Spherical::of(&Mesh::default(), Barycentre::Vertices), None);
+}
+
+/// The mean of the vertices follows the tessellation; those of area and volume do not.
+#[wasm_bindgen_test(unsupported = test)]
+fn spherical_barycentres_and_tessellation() {
+    let mesh = shapes::asteroid(60, 80);
+    let coarse = simplify(&mesh, 0.5);
+    let change = |barycentre| {
+        let [a, b] = [&mesh, &coarse].map(|mesh| Spherical::of(mesh, barycentre).unwrap());
+        let points = mesh.positions.iter();
+        let changes = points.map(|&p| (a.radius(p) - b.radius(p)).abs());
+        changes.fold(0.0, f64::max)
+    };
+    let [vertices, area, volume] =
+        [Barycentre::Vertices, Barycentre::Area, Barycentre::Volume].map(change);
+    assert!(
+        vertices > 5.0 * area && vertices > 5.0 * volume,
+        "{vertices} {area} {volume}"
+    );
+}
+
+const MESSAGE: [u8; 8] = *b"Bata Vas";
+
+/// 5 002 vertices, all hosts, the most stable first.
+fn marked(rms_rel: f64) -> (Mesh, Vec<u32>, Embedded) {
+    let mesh = shapes::asteroid(50, 100);
+    let hosts = rank(&mesh, Ranking::Collapse).order;
+    let embedded = chain(&key(1))
+        .embed(&mesh, &hosts, &MESSAGE, rms_rel)
+        .unwrap();
+    (mesh, hosts, embedded)
+}
+
+fn chain(key: &meshmark::Key) -> Chain<'_> {
+    Chain {
+        key,
+        block: Block::Tc128,
+        barycentre: Barycentre::Vertices,
+    }
+}
+
+fn known(hosts: &[u32]) -> Vec<Option<u32>> {
+    hosts.iter().map(|&host| Some(host)).collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn chain_is_read_where_the_indices_are_known() {
+    let (mesh, hosts, embedded) = marked(8e-4);
+    let moved = Distortion::between(&mesh.positions, &embedded.mesh.positions);
+    assert!((moved.rms_rel / 8e-4 - 1.0).abs() < 0.05, "{moved:?}");
+    assert_eq!(moved.num_moved, 3 * embedded.symbols.len());
+    let key = key(1);
+    for suspect in [
+        embedded.mesh.clone(),
+        similarity(&embedded.mesh, 1),
+        noise(&embedded.mesh, 0.001, 1),
+        catmull_clark(&embedded.mesh, 1),
+    ] {
+        let read = chain(&key).read_traced(&suspect, &known(&hosts), embedded.step);
+        let read = read.unwrap();
+        assert!(read.decoded.is_codeword);
+        assert_eq!(read.decoded.message, MESSAGE);
+        let (wrong, lost) = read.symbol_errors(&embedded.symbols);
+        assert!(wrong < 0.05 && lost == 0.0, "{wrong}");
+    }
+    let mut some = known(&hosts);
+    some.iter_mut().step_by(17).for_each(|host| *host = None);
+    let read = chain(&key).read_traced(&embedded.mesh, &some, embedded.step);
+    let read = read.unwrap();
+    let (wrong, lost) = read.symbol_errors(&embedded.symbols);
+    assert!(wrong == 0.0 && (0.1..0.25).contains(&lost), "{lost}");
+    assert_eq!(read.decoded.message, MESSAGE, "lost hosts are erasures");
+}
+
+/// The paper's assumption is what it stands on: with nothing but the suspect's own ranking half of the bits are wrong, though
+/// nothing has happened to the mesh but the mark.
+#[wasm_bindgen_test(unsupported = test)]
+fn chain_is_lost_where_hosts_are_ranked_again() {
+    let (_, _, embedded) = marked(8e-4);
+    let key = key(1);
+    let read = chain(&key).read_ranked(&embedded.mesh, Ranking::Collapse, embedded.step);
+    let read = read.unwrap();
+    assert!(!read.decoded.is_codeword);
+    let wrong: u32 = read
+        .decoded
+        .message
+        .iter()
+        .zip(MESSAGE)
+        .map(|(a, b)| (a ^ b).count_ones())
+        .sum();
+    assert!((16..48).contains(&wrong), "{wrong} of 64 bits");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn chain_says_nothing_to_another_key() {
+    let (_, hosts, embedded) = marked(8e-4);
+    let key = key(2);
+    let read = chain(&key).read_traced(&embedded.mesh, &known(&hosts), embedded.step);
+    let read = read.unwrap();
+    assert!(!read.decoded.is_codeword);
+    let (wrong, _) = read.symbol_errors(&embedded.symbols);
+    assert!((0.35..0.65).contains(&wrong), "{wrong}");
+}
+
+/// Eq. 1: whoever has the original needs no indices.
+#[wasm_bindgen_test(unsupported = test)]
+fn equation_1_reads_with_the_original() {
+    let (mesh, hosts, embedded) = marked(8e-4);
+    let suspect = similarity(&reorder(&embedded.mesh, 3), 4);
+    let key = key(1);
+    let read = chain(&key).read_with_original(&suspect, &mesh, &hosts, embedded.step);
+    let read = read.unwrap();
+    assert_eq!(read.decoded.message, MESSAGE);
+    let (wrong, lost) = read.symbol_errors(&embedded.symbols);
+    assert!(wrong < 0.1 && lost == 0.0, "{wrong}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn chain_refuses_too_few_hosts() {
+    let mesh = asteroid();
+    let hosts: Vec<u32> = (0..1151).collect();
+    let key = key(1);
+    let error = chain(&key).embed(&mesh, &hosts, &MESSAGE, 8e-4);
+    assert_eq!(error.unwrap_err().code(), "carrier.too-few-hosts");
+    assert_eq!(Chain::num_hosts(Block::Tc128), 1152);
+    assert_eq!(Chain::capacity(1151), None);
+    assert_eq!(Chain::capacity(5000), Some(Block::Tc512));
+}
+
+/// An ellipsoid with bumps: a frame whose axes differ, and distances that do.
+fn pebble() -> Mesh {
+    let mesh = shapes::asteroid(80, 160);
+    let stretch = DVec3::new(1.0, 0.8, 0.6);
+    mesh.with_positions(mesh.positions.iter().map(|&p| p * stretch).collect())
+}
+
+const STEP: f64 = 0.012;
+
+fn in_cells(mesh: &Mesh, owner: u8, message: &[u8]) -> Mesh {
+    let cells = Cells::new(&key(owner), Block::Tc128, STEP);
+    let moved = cells.embed(mesh, message).unwrap();
+    let positions = mesh.positions.iter().zip(moved).map(|(p, d)| *p + d);
+    mesh.with_positions(positions.collect())
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn cells_are_read_blind() {
+    let mesh = pebble();
+    let marked = in_cells(&mesh, 1, &MESSAGE);
+    let cells = Cells::new(&key(1), Block::Tc128, STEP);
+    for (name, suspect) in [
+        ("none", marked.clone()),
+        ("noise", noise(&marked, 0.001, 1)),
+        ("meshsmooth", catmull_clark(&marked, 1)),
+        ("simplify", simplify(&marked, 0.3)),
+    ] {
+        let suspect = similarity(&reorder(&suspect, 3), 4);
+        let readings = cells.read(&suspect);
+        let right = readings
+            .iter()
+            .find(|reading| reading.decoded.message == MESSAGE);
+        let right = right.unwrap_or_else(|| panic!("{name}"));
+        assert!(right.decoded.is_codeword);
+        let word = Block::Tc128.encode(&MESSAGE);
+        let charge = libm::log(f64::from(cells::NUM_TESTS)) + 64.0 * std::f64::consts::LN_2;
+        let ln_p = union(right.statistic(&word).ln_p(), charge);
+        assert!(ln_p < LN_P_FOUND, "{name}: {ln_p}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn cells_say_nothing_to_another_key() {
+    let marked = in_cells(&pebble(), 1, &MESSAGE);
+    let word = Block::Tc128.encode(&MESSAGE);
+    for stranger in 2..6 {
+        let readings = Cells::new(&key(stranger), Block::Tc128, STEP).read(&marked);
+        assert!(!readings.is_empty());
+        for reading in readings {
+            assert_ne!(reading.decoded.message, MESSAGE);
+            assert!(reading.statistic(&word).ln_p() > -20.0);
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn cells_of_nothing() {
+    let cells = Cells::new(&key(1), Block::Tc128, STEP);
+    assert!(cells.read(&Mesh::default()).is_empty());
+    let error = cells.embed(&Mesh::default(), &MESSAGE).unwrap_err();
+    assert_eq!(error.code(), "carrier.too-few-hosts");
+}

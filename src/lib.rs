@@ -2,7 +2,7 @@
 //!
 //! [`embed`] puts a 48-bit payload into a model under a key. [`measure`] takes from any suspect copy all that needs no
 //! key; [`extract`] reads a payload from that with the key alone, and [`verify`] tests an expected one, each with a bound
-//! of the probability that it would say so of a model made without the key.
+//! of the probability that it would say so of a model made without the key. [`note`] does the same with a short text.
 //!
 //! ```
 //! use meshmark::{EmbedOptions, Files, Key, Payload, Verdict, demo_model, embed, extract, ignore, measure};
@@ -51,7 +51,7 @@ pub use key::Key;
 pub use progress::{Cancelled, Progress, Stage, ignore};
 pub use watermark::{
     CarrierCapacity, CarrierReading, EmbedOptions, EmbedReport, Embedding, Error, Extraction,
-    Forecast, Inspection, Level, Strength, Verdict, detect, embed, extract, inspect, measure,
+    Forecast, Inspection, Level, Strength, Verdict, detect, embed, extract, inspect, measure, note,
     verify,
 };
 

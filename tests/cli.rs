@@ -215,6 +215,44 @@ fn cli_never_overwrites_the_host_nor_leaves_its_folder() {
 }
 
 #[test]
+fn cli_writes_and_reads_a_note() {
+    let here = Folder::new("note");
+    let (code, report, said) = here.run(&format!(
+        "note embed model.glb -o noted.glb {ADA} --text Kallisto"
+    ));
+    assert_eq!(code, 0, "{report} {said}");
+    assert_eq!(
+        (&report["text"], &report["size"]["bits"]),
+        (&"Kallisto".into(), &64.into())
+    );
+    assert_eq!(report["capacity"]["characters"], 29);
+    assert!(report["rms_rel"].as_f64().unwrap() < 0.001);
+    assert_eq!(report["read_back"]["verdict"], "found");
+    here.run(&format!("embed noted.glb marked.glb {ADA} --tag ADA-1"));
+    let (code, report, _) = here.run(&format!("note read marked.glb {ADA}"));
+    assert_eq!((code, &report["text"]), (0, &"Kallisto".into()));
+    assert!(report["ln_p"].as_f64().unwrap() < -100.0);
+    let (code, report, _) = here.run(&format!("extract marked.glb {ADA}"));
+    assert_eq!((code, &report["tag"]), (0, &"ADA-1".into()));
+
+    let other = "--owner Ada --passphrase-file other.txt";
+    let (code, report, _) = here.run(&format!("note read marked.glb {other}"));
+    assert_eq!(
+        (code, &report["verdict"], &report["text"]),
+        (1, &"none".into(), &Value::Null)
+    );
+    let long = "x".repeat(30);
+    let (code, report, _) = here.run(&format!(
+        "note embed model.glb -o no.glb {ADA} --text {long}"
+    ));
+    assert_eq!(
+        (code, &report["error"]["code"]),
+        (2, &"text.too-long".into())
+    );
+    assert!(!here.path("no.glb").exists());
+}
+
+#[test]
 fn cli_inspects() {
     let here = Folder::new("inspect");
     let (code, report, _) = here.run("inspect model.glb");

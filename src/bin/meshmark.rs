@@ -7,7 +7,7 @@ use meshmark::detection::{LN_P_FOUND, union};
 use meshmark::document::DocumentError;
 use meshmark::{
     Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage,
-    Strength, Verdict, detect, embed, extract, inspect, measure, verify,
+    Strength, Verdict, detect, embed, extract, inspect, measure, note, verify,
 };
 use serde_json::{Map, Value, json};
 use std::error::Error as StdError;
@@ -85,10 +85,39 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         keys: PathBuf,
     },
+    /// Write a text into a model, or read it: up to 29 characters. A mark goes on top, so after the note
+    Note {
+        #[command(subcommand)]
+        command: NoteCommand,
+    },
     /// Describe a model and what it could hold
     Inspect {
         /// .glb or .gltf
         input: PathBuf,
+    },
+}
+
+#[derive(Subcommand)]
+enum NoteCommand {
+    /// Write a text and read it back
+    Embed {
+        /// The model: .glb, or .gltf with its buffers beside it
+        input: PathBuf,
+        /// 1 to 29 bytes of UTF-8; fewer in models of less than 8192 vertices
+        #[arg(long)]
+        text: String,
+        /// Where the model with the note goes; changed buffers of a .gltf go beside it
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+    },
+    /// Read the note of a key
+    Read {
+        /// .glb or .gltf
+        input: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
     },
 }
 
@@ -162,21 +191,7 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             let options = EmbedOptions { strength, carriers };
             let (model, files) = open(&input)?;
             let marked = embed(&model, &files, payload, &key, &options, &mut clock)?;
-            let mut outputs = vec![(output.clone(), &marked.model)];
-            for (name, bytes) in &marked.files {
-                let buffer = sibling(&output, name)?;
-                if same_file(&buffer, &sibling(&input, name)?) {
-                    let path = buffer.display();
-                    return Err(format!(
-                        "{path} would be overwritten: write the marked model to another folder"
-                    )
-                    .into());
-                }
-                outputs.push((buffer, bytes));
-            }
-            outputs
-                .iter()
-                .try_for_each(|(path, bytes)| store(path, bytes))?;
+            store_all(&input, &output, &marked.model, &marked.files)?;
             Ok((report(&marked.report, clock)?, FOUND))
         }
         Command::Extract { input, owner } => {
@@ -202,6 +217,30 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             let (readings, code) = test(&input, &keys, &mut clock)?;
             Ok((report(&readings, clock)?, code))
         }
+        Command::Note {
+            command:
+                NoteCommand::Embed {
+                    input,
+                    text,
+                    output,
+                    owner,
+                },
+        } => {
+            let key = owner.key()?;
+            let (model, files) = open(&input)?;
+            let noted = note::embed(&model, &files, &text, &key, &mut clock)?;
+            store_all(&input, &output, &noted.model, &noted.files)?;
+            Ok((report(&noted.report, clock)?, FOUND))
+        }
+        Command::Note {
+            command: NoteCommand::Read { input, owner },
+        } => {
+            let key = owner.key()?;
+            let (model, files) = open(&input)?;
+            let reading = note::read(&model, &files, &key, &mut clock)?;
+            let code = exit_code(reading.verdict);
+            Ok((report(&reading, clock)?, code))
+        }
         Command::Inspect { input } => {
             let (model, files) = open(&input)?;
             Ok((report(&inspect(&model, &files)?, clock)?, FOUND))
@@ -210,12 +249,15 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
 }
 
 fn judge(extraction: &Extraction, clock: Clock) -> Result<(Value, u8), Failure> {
-    let code = match extraction.verdict {
+    Ok((report(extraction, clock)?, exit_code(extraction.verdict)))
+}
+
+fn exit_code(verdict: Verdict) -> u8 {
+    match verdict {
         Verdict::Found => FOUND,
         Verdict::CannotCheck => CANNOT_CHECK,
         _ => NOT_FOUND,
-    };
-    Ok((report(extraction, clock)?, code))
+    }
 }
 
 /// A report as JSON with names in snake case, and the milliseconds of each stage.
@@ -402,6 +444,25 @@ fn sibling(path: &Path, name: &str) -> Result<PathBuf, Failure> {
         return Err(format!("{name:?} lies outside of the model's folder").into());
     }
     Ok(path.parent().unwrap_or(Path::new("")).join(name))
+}
+
+/// Writes a changed model and its changed buffers, but never over the buffers of the input.
+fn store_all(input: &Path, output: &Path, model: &[u8], files: &Files) -> Result<(), Failure> {
+    let mut outputs = vec![(output.to_owned(), model)];
+    for (name, bytes) in files {
+        let buffer = sibling(output, name)?;
+        if same_file(&buffer, &sibling(input, name)?) {
+            let path = buffer.display();
+            return Err(format!(
+                "{path} would be overwritten: write the marked model to another folder"
+            )
+            .into());
+        }
+        outputs.push((buffer, bytes));
+    }
+    outputs
+        .iter()
+        .try_for_each(|(path, bytes)| store(path, bytes))
 }
 
 fn same_file(a: &Path, b: &Path) -> bool {

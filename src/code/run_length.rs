@@ -27,7 +27,7 @@ pub fn encode(bits: &[bool]) -> Vec<bool> {
 
 /// The symbol of the run in a place.
 fn level(place: usize) -> bool {
-    place % 2 == 0
+    place.is_multiple_of(2)
 }
 
 fn length(bit: bool) -> usize {

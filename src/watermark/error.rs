@@ -2,6 +2,7 @@
 
 use crate::bits::PayloadError;
 use crate::carrier::CarrierError;
+use crate::code::TextError;
 use crate::document::DocumentError;
 use crate::evidence::EvidenceError;
 use crate::key::KeyError;
@@ -27,6 +28,9 @@ pub enum Error {
     /// The payload was refused.
     #[error(transparent)]
     Payload(#[from] PayloadError),
+    /// The text of a note was refused.
+    #[error(transparent)]
+    Text(#[from] TextError),
     /// The evidence cannot be read.
     #[error(transparent)]
     Evidence(#[from] EvidenceError),
@@ -47,6 +51,12 @@ pub enum Error {
         /// Distinct addresses of the marked model.
         addresses: usize,
     },
+    /// The model was read back, and its note was not found: nothing was written.
+    #[error(
+        "the note could not be read back from the model, so nothing was returned: its vertices are too few in too many \
+         directions, or they cannot move as they should; a shorter note or another key may do"
+    )]
+    NoteUnreadable,
     /// The caller asked to stop; nothing was changed.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -61,10 +71,12 @@ impl Error {
             Error::Carrier(error) => error.code(),
             Error::Key(error) => error.code(),
             Error::Payload(error) => error.code(),
+            Error::Text(error) => error.code(),
             Error::Evidence(error) => error.code(),
             Error::Strength(_) => "options.strength",
             Error::NoCarrier => "options.no-carrier",
             Error::Unreadable { .. } => "watermark.unreadable",
+            Error::NoteUnreadable => "note.unreadable",
             Error::Cancelled(_) => "aborted",
         }
     }

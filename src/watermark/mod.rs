@@ -5,6 +5,7 @@ mod error;
 mod extract;
 mod forecast;
 mod inspect;
+pub mod note;
 mod options;
 mod report;
 

@@ -19,6 +19,7 @@ mod golden;
 mod key;
 mod mesh;
 mod models;
+mod note;
 mod osveta;
 mod payload;
 mod ring;

@@ -44,6 +44,9 @@ const VERTICES_PER_BIT: usize = 16;
 /// Evidence of one bit is cut off here.
 const MOST: f64 = 12.0;
 
+/// Limit of what one cell says against chance, in standard deviations: cells with many vertices are no better witnesses.
+const MOST_OF_CELL: f64 = 2.0;
+
 /// What embedder and detector agree on.
 pub struct Cells {
     block: Block,
@@ -64,7 +67,7 @@ pub struct CellReading {
     pub evidence: Vec<f64>,
     /// What the code made of it.
     pub decoded: Decoded,
-    /// The bit of each cell, its value (positive for a 0), and what the value could be at most.
+    /// The bit of each cell that has vertices, its value (positive for a 0), and what the value could be at most.
     cells: Vec<(u32, f64, f64)>,
 }
 
@@ -99,16 +102,21 @@ impl Cells {
         }
     }
 
+    /// Vertices that a block needs.
+    pub fn num_vertices(block: Block) -> usize {
+        VERTICES_PER_BIT * block.code_bits()
+    }
+
     /// The longest block that a number of vertices carries.
     pub fn capacity(num_vertices: usize) -> Option<Block> {
-        let fits = |block: &Block| VERTICES_PER_BIT * block.code_bits() <= num_vertices;
+        let fits = |block: &Block| Cells::num_vertices(*block) <= num_vertices;
         Block::ALL.into_iter().rev().find(fits)
     }
 
     /// The displacement of all V vertices that writes a message.
     pub fn embed(&self, mesh: &Mesh, message: &[u8]) -> Result<Vec<DVec3>, CarrierError> {
         let pose = frame(mesh).ok_or(CarrierError::TooFewHosts {
-            needed: VERTICES_PER_BIT * self.block.code_bits(),
+            needed: Cells::num_vertices(self.block),
             available: 0,
         })?;
         let word = self.block.encode(message);
@@ -169,12 +177,20 @@ impl Cells {
         let values = self.values(&sums);
         let clip = |z: &f64| (2.0 * z).clamp(-MOST, MOST);
         let evidence: Vec<f64> = self.bits_of(&values, view).iter().map(clip).collect();
-        let cells = self.bits.iter().zip(values).zip(&sums);
+        let mut energies = vec![0.0; sums.len()];
+        for &(cell, weight) in &view.0 {
+            energies[cell as usize] += weight * weight;
+        }
+        let cells = self.bits.iter().zip(values).zip(sums.iter().zip(&energies));
+        let occupied = cells.filter(|(_, (sum, _))| sum.length() > 0.0);
         CellReading {
             decoded: self.block.decode(&evidence),
             evidence,
-            cells: cells
-                .map(|((&bit, value), sum)| (bit, value, sum.length()))
+            cells: occupied
+                .map(|((&bit, value), (sum, energy))| {
+                    let most = (sum.length() / energy.sqrt()).min(MOST_OF_CELL);
+                    (bit, value / sum.length() * most, most)
+                })
                 .collect(),
         }
     }
@@ -261,6 +277,15 @@ impl Cells {
 }
 
 impl CellReading {
+    /// The decoded message or its complement, whichever is right.
+    pub fn message(&self, is_right: impl Fn(&[u8]) -> bool) -> Option<Vec<u8>> {
+        let decoded = self.decoded.message.clone();
+        let complement = decoded.iter().map(|byte| !byte).collect();
+        [decoded, complement]
+            .into_iter()
+            .find(|message| is_right(message))
+    }
+
     /// How surprising it is that the cells agree with a codeword. Where the key had no part in making the mesh, each dither is
     /// uniform, whatever the mesh: the terms are as [`Statistic`] asks for.
     pub fn statistic(&self, word: &[bool]) -> Statistic {

@@ -29,6 +29,9 @@ const SCALES: u32 = 81;
 const LEAST_SCALE: f64 = 0.98;
 const SCALE_STEP: f64 = 5e-4;
 
+/// Vertices that are carried through all scales at a time: what the fast memory holds.
+const CHUNK: usize = 2048;
+
 /// Ways of reading whose words are decoded.
 const CANDIDATES: usize = 6;
 
@@ -78,8 +81,13 @@ struct Ray {
     direction: DVec3,
 }
 
-/// The cell and the weight (0 to 1) of every vertex.
-struct View(Vec<(u32, f64)>);
+/// Rays as they lie in the cells after a turn.
+struct View {
+    /// The cell and the weight (0 to 1) of every ray.
+    places: Vec<(u32, f64)>,
+    /// Sum of the squared weights in each cell.
+    energies: Vec<f64>,
+}
 
 impl Cells {
     /// The cells of a key for a code, and a step in units of the frame.
@@ -157,39 +165,48 @@ impl Cells {
 
     /// The energy of the bits, by turn and scale.
     fn scan(&self, rays: &[Ray], views: &[View; 4]) -> [Vec<f64>; 4] {
-        let mut phasors = self.phasors(rays, LEAST_SCALE);
-        let steps = self.phasors(rays, SCALE_STEP);
+        let num_cells = self.directions.len();
+        let mut sums = vec![DVec2::ZERO; SCALES as usize * views.len() * num_cells];
+        for first in (0..rays.len()).step_by(CHUNK) {
+            let chunk = first..(first + CHUNK).min(rays.len());
+            let mut phasors = self.phasors(&rays[chunk.clone()], LEAST_SCALE);
+            let steps = self.phasors(&rays[chunk.clone()], SCALE_STEP);
+            for sums in sums.chunks_exact_mut(views.len() * num_cells) {
+                for (sums, view) in sums.chunks_exact_mut(num_cells).zip(views) {
+                    gather(sums, &phasors, &view.places[chunk.clone()]);
+                }
+                let turned = phasors.iter_mut().zip(&steps);
+                turned.for_each(|(phasor, step)| *phasor = step.rotate(*phasor));
+            }
+        }
         let mut energies = [const { Vec::new() }; 4];
-        for _ in scales() {
-            for (energies, view) in energies.iter_mut().zip(views) {
-                let values = self.values(&self.sums(&phasors, view));
-                let bits = self.bits_of(&values, view);
+        for sums in sums.chunks_exact(views.len() * num_cells) {
+            let turns = energies.iter_mut().zip(views);
+            for ((energies, view), sums) in turns.zip(sums.chunks_exact(num_cells)) {
+                let bits = self.bits_of(&self.values(sums), view);
                 energies.push(bits.iter().map(|z| z * z).sum());
             }
-            let turned = phasors.iter_mut().zip(&steps);
-            turned.for_each(|(phasor, step)| *phasor = step.rotate(*phasor));
         }
         energies
     }
 
     fn reading(&self, phasors: &[DVec2], view: &View) -> CellReading {
-        let sums = self.sums(phasors, view);
+        let mut sums = vec![DVec2::ZERO; self.directions.len()];
+        gather(&mut sums, phasors, &view.places);
         let values = self.values(&sums);
         let clip = |z: &f64| (2.0 * z).clamp(-MOST, MOST);
         let evidence: Vec<f64> = self.bits_of(&values, view).iter().map(clip).collect();
-        let mut energies = vec![0.0; sums.len()];
-        for &(cell, weight) in &view.0 {
-            energies[cell as usize] += weight * weight;
-        }
-        let cells = self.bits.iter().zip(values).zip(sums.iter().zip(&energies));
-        let occupied = cells.filter(|(_, (sum, _))| sum.length() > 0.0);
+        let lengths = sums.iter().map(|sum| sum.length());
+        let cells = self.bits.iter().zip(values);
+        let cells = cells.zip(lengths.zip(&view.energies));
+        let occupied = cells.filter(|(_, (length, _))| *length > 0.0);
         CellReading {
             decoded: self.block.decode(&evidence),
             evidence,
             cells: occupied
-                .map(|((&bit, value), (sum, energy))| {
-                    let most = (sum.length() / energy.sqrt()).min(MOST_OF_CELL);
-                    (bit, value / sum.length() * most, most)
+                .map(|((&bit, value), (length, energy))| {
+                    let most = (length / energy.sqrt()).min(MOST_OF_CELL);
+                    (bit, value / length * most, most)
                 })
                 .collect(),
         }
@@ -202,7 +219,12 @@ impl Cells {
             let (cell, apart) = self.cell(ray.direction * turn);
             (cell as u32, (apart / margin).min(1.0))
         };
-        View(rays.iter().map(place).collect())
+        let places: Vec<(u32, f64)> = rays.iter().map(place).collect();
+        let mut energies = vec![0.0; self.directions.len()];
+        for &(cell, weight) in &places {
+            energies[cell as usize] += weight * weight;
+        }
+        View { places, energies }
     }
 
     /// Each ray's phase in the quantizer, as a unit vector.
@@ -212,15 +234,6 @@ impl Cells {
             DVec2::new(cosine, sine)
         };
         rays.iter().map(phasor).collect()
-    }
-
-    /// The weighted sum of phasors in each cell.
-    fn sums(&self, phasors: &[DVec2], view: &View) -> Vec<DVec2> {
-        let mut sums = vec![DVec2::ZERO; self.directions.len()];
-        for (phasor, &(cell, weight)) in phasors.iter().zip(&view.0) {
-            sums[cell as usize] += *phasor * weight;
-        }
-        sums
     }
 
     /// What each cell says of its bit: minus the sine of its phase less the dither, positive for a 0.
@@ -234,16 +247,14 @@ impl Cells {
 
     /// The values of the bits, in units of their standard deviation where nothing was written.
     fn bits_of(&self, values: &[f64], view: &View) -> Vec<f64> {
-        let mut totals = vec![0.0; self.block.code_bits()];
-        for (&bit, value) in self.bits.iter().zip(values) {
-            totals[bit as usize] += value;
+        let mut bits = vec![(0.0, 1e-9); self.block.code_bits()];
+        for ((&bit, value), energy) in self.bits.iter().zip(values).zip(&view.energies) {
+            let (total, variance) = &mut bits[bit as usize];
+            *total += value;
+            *variance += 0.5 * energy;
         }
-        let mut energies = vec![0.0; totals.len()];
-        for &(cell, weight) in &view.0 {
-            energies[self.bits[cell as usize] as usize] += weight * weight;
-        }
-        let normalized = |(total, energy): (f64, f64)| total / (0.5 * energy + 1e-9).sqrt();
-        totals.into_iter().zip(energies).map(normalized).collect()
+        let normalized = |(total, variance): (f64, f64)| total / variance.sqrt();
+        bits.into_iter().map(normalized).collect()
     }
 
     /// The cell of a direction, and how much nearer its centre is than any other, as chords. Centres lie in order of z.
@@ -302,6 +313,13 @@ impl Ray {
             radius: point.length(),
             direction: point.normalize_or(DVec3::Z),
         }
+    }
+}
+
+/// Adds weighted phasors to the sums of their cells.
+fn gather(sums: &mut [DVec2], phasors: &[DVec2], places: &[(u32, f64)]) {
+    for (phasor, &(cell, weight)) in phasors.iter().zip(places) {
+        sums[cell as usize] += *phasor * weight;
     }
 }
 

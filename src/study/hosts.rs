@@ -3,7 +3,7 @@
 //! The paper gives one number a column and does not say how it counts. Its first column fits [`Rule::Index`]: its "random"
 //! is that rule's chance level. No rule fits both columns.
 
-use super::{Smoothing, ranked};
+use super::{Smoothing, Spread, ranked};
 use crate::carrier::osveta::Ranking;
 use crate::mesh::Mesh;
 use crate::order::order_by;
@@ -79,20 +79,6 @@ pub struct RuleCounts {
     pub ranked: Vec<Count>,
 }
 
-/// Counts of several draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Spread {
-    /// Their mean.
-    pub mean: f64,
-    /// Their standard deviation.
-    pub deviation: f64,
-    /// The least.
-    pub least: usize,
-    /// The greatest.
-    pub greatest: usize,
-}
-
 /// The count of a ranking.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -150,7 +136,8 @@ pub fn hosts(
         (rule != Rule::Region).then_some(chance)
     };
     let rule_counts = |(place, (rule, count)): (usize, (Rule, usize))| {
-        let spread = Spread::of(drawn.iter().map(|counts| counts[place].1));
+        let draws: Vec<f64> = drawn.iter().map(|counts| counts[place].1 as f64).collect();
+        let spread = Spread::of(&draws);
         RuleCounts {
             rule,
             chance: chance(rule, count),
@@ -176,22 +163,6 @@ pub fn hosts(
         num_vertices_before: before,
         num_vertices: after,
         rules: rules.into_iter().enumerate().map(rule_counts).collect(),
-    }
-}
-
-impl Spread {
-    fn of(counts: impl Iterator<Item = usize> + Clone) -> Spread {
-        let number = counts.clone().count().max(1) as f64;
-        let mean = counts.clone().sum::<usize>() as f64 / number;
-        let squares = counts
-            .clone()
-            .map(|count| (count as f64 - mean) * (count as f64 - mean));
-        Spread {
-            mean,
-            deviation: (squares.sum::<f64>() / (number - 1.0).max(1.0)).sqrt(),
-            least: counts.clone().min().unwrap_or(0),
-            greatest: counts.max().unwrap_or(0),
-        }
     }
 }
 

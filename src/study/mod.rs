@@ -2,13 +2,16 @@
 //!
 //! Every function answers one question about one mesh; a mesh of the paper's size is made by [`brought`].
 
+pub mod errors;
 mod hosts;
 mod map;
 mod smoothing;
+mod spread;
 
-pub use hosts::{Count, HostsOptions, HostsRow, Rule, RuleCounts, Spread, hosts};
+pub use hosts::{Count, HostsOptions, HostsRow, Rule, RuleCounts, hosts};
 pub use map::{Fields, Tracing, fields, trace};
 pub use smoothing::Smoothing;
+pub use spread::Spread;
 
 use crate::attack::simplify_to;
 use crate::carrier::osveta::{Ranking, rank};

@@ -62,6 +62,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
             "key",
             "mesh",
             "order",
+            "progress",
             "random",
             "watermark",
         ],

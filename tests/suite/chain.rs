@@ -20,7 +20,7 @@ const CLEAN: Channel = Channel {
 
 /// Uniform in [0, 1).
 fn random(address: u64) -> f64 {
-    key(7).prf("test").at(address).0 as f64 / 2f64.powi(64)
+    key(7).prf("test").at(address).0 as f64 / 18_446_744_073_709_551_616.0
 }
 
 fn bits(text: &str) -> Vec<bool> {
@@ -138,7 +138,7 @@ fn arrivals(sent: usize, arrived: usize, channel: Channel) -> f64 {
     let first = |copies: usize| match copies {
         0 => channel.deletion,
         _ => {
-            let further = channel.insertion.powf((copies - 1) as f64);
+            let further = libm::pow(channel.insertion, (copies - 1) as f64);
             (1.0 - channel.deletion) * (1.0 - channel.insertion) * further
         }
     };

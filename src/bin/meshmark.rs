@@ -11,7 +11,7 @@ use meshmark::{
 };
 use serde_json::{Map, Value, json};
 use std::error::Error as StdError;
-use std::io::{IsTerminal, Write, stderr};
+use std::io::{IsTerminal, Write, stderr, stdout};
 use std::ops::ControlFlow;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
@@ -155,7 +155,7 @@ fn main() -> ExitCode {
     };
     match run(arguments.command) {
         Ok((report, code)) => {
-            println!("{report:#}");
+            print(&report);
             ExitCode::from(code)
         }
         Err(failure) => {
@@ -168,11 +168,16 @@ fn main() -> ExitCode {
                     "path": known.and_then(Error::pointer),
                 },
             });
-            println!("{report:#}");
+            print(&report);
             eprintln!("meshmark: {failure}");
             ExitCode::from(CANNOT_CHECK)
         }
     }
+}
+
+/// Prints a report. Whoever closes the pipe has read enough.
+fn print(report: &Value) {
+    let _ = writeln!(stdout(), "{report:#}");
 }
 
 fn run(command: Command) -> Result<(Value, u8), Failure> {

@@ -4,8 +4,8 @@
 //! drawn from the key, so addresses that an attack destroys cost energy and nothing else. (A code of fixed length with
 //! repetition left 6 % of the bits wrong where this one is right: erased positions of such a code cannot be made good.)
 //!
-//! Decoding collects the soft values of a step by taps, turns them into metrics of the 512 register states by one
-//! Walsh-Hadamard transform, and runs the parallel list Viterbi algorithm (Seshadri and Sundberg 1994) on 256 states.
+//! Decoding collects the soft values of a step by taps, turns them into metrics of the register states by one Walsh-Hadamard
+//! transform, and runs the Viterbi algorithm on 256 states; for a list, the parallel list one (Seshadri and Sundberg 1994).
 //! O(steps * states * list).
 
 use super::{SoftSymbol, Symbol};
@@ -15,8 +15,9 @@ pub const MESSAGE_BITS: u32 = 60;
 const MEMORY: u32 = 8;
 /// Time steps: the message, then zeros that bring the register back to its start.
 pub(super) const STEPS: usize = (MESSAGE_BITS + MEMORY) as usize;
-const REGISTERS: usize = 1 << (MEMORY + 1);
 const STATES: usize = 1 << MEMORY;
+/// The first and the last tap are always set: what the bits between them say is as much as there is to know of a register.
+const INNER: usize = STATES / 2;
 
 /// A message ready to give the sign of any symbol.
 #[derive(Clone)]
@@ -56,11 +57,23 @@ impl Codeword {
 
 /// The `list` likeliest messages, best first. Pilots are ignored.
 pub fn decode(symbols: &[SoftSymbol], list: usize) -> Vec<u64> {
-    Trellis::new(symbols).best_paths(list)
+    let trellis = Trellis::new(symbols);
+    if list == 1 {
+        vec![trellis.best_path()]
+    } else {
+        trellis.best_paths(list)
+    }
 }
 
-/// The metric of every register state at every step.
-struct Trellis(Vec<[f64; REGISTERS]>);
+/// The metric of every register's inner bits at every step, where the first and the last bit are equal; where they differ it is
+/// the negative.
+struct Trellis(Vec<[f64; INNER]>);
+
+/// The states before a state: which is reached depends on the bit that left the register.
+fn before(state: usize) -> [usize; 2] {
+    let low = (state << 1) & (STATES - 1);
+    [low, low | 1]
+}
 
 /// One way to reach a state: its metric, the predecessor, and which of the predecessor's ways it prolongs.
 #[derive(Clone, Copy)]
@@ -72,14 +85,44 @@ struct Path {
 
 impl Trellis {
     fn new(symbols: &[SoftSymbol]) -> Trellis {
-        let mut steps = vec![[0.0; REGISTERS]; STEPS];
+        let mut steps = vec![[0.0; INNER]; STEPS];
         for soft in symbols {
             if let Symbol::Parity { step, taps } = soft.symbol {
-                steps[usize::from(step)][usize::from(taps)] += soft.value;
+                let inner = usize::from(taps) / 2 % INNER;
+                steps[usize::from(step)][inner] += soft.value;
             }
         }
         steps.iter_mut().for_each(walsh_hadamard);
         Trellis(steps)
+    }
+
+    /// The likeliest message.
+    fn best_path(&self) -> u64 {
+        let mut reached = [f64::NEG_INFINITY; STATES];
+        reached[0] = 0.0;
+        let choices: Vec<[bool; STATES]> = self
+            .0
+            .iter()
+            .map(|metrics| {
+                let mut choice = [false; STATES];
+                let mut next = [0.0; STATES];
+                let (low, high) = next.split_at_mut(INNER);
+                let (low_choice, high_choice) = choice.split_at_mut(INNER);
+                for (inner, from) in reached.as_chunks::<2>().0.iter().enumerate() {
+                    let (metric, [a, b]) = (metrics[inner], *from);
+                    (low[inner], low_choice[inner]) = better(a + metric, b - metric);
+                    (high[inner], high_choice[inner]) = better(a - metric, b + metric);
+                }
+                reached = next;
+                choice
+            })
+            .collect();
+        let (mut state, mut message) = (0, 0);
+        for (step, choice) in choices.iter().enumerate().rev() {
+            message |= bit(step, state);
+            state = before(state)[usize::from(choice[state])];
+        }
+        message
     }
 
     fn best_paths(&self, list: usize) -> Vec<u64> {
@@ -94,10 +137,10 @@ impl Trellis {
                 STATES / 2
             };
             for state in 0..num_states {
-                let input = state >> (MEMORY - 1);
-                let low = (state << 1) & (STATES - 1);
-                let [a, b] = [low, low | 1].map(|from| {
-                    let branch = metrics[input << MEMORY | from];
+                let metric = metrics[state % INNER];
+                let [a, b] = before(state).map(|from| {
+                    let differ = (state >> (MEMORY - 1)) ^ (from & 1) == 1;
+                    let branch = if differ { -metric } else { metric };
                     reached
                         .paths(from)
                         .iter()
@@ -116,6 +159,11 @@ impl Trellis {
             .map(|rank| trace(&layers, rank))
             .collect()
     }
+}
+
+/// The larger of two metrics, and whether it is the second; the first wins ties.
+fn better(a: f64, b: f64) -> (f64, bool) {
+    if b > a { (b, true) } else { (a, false) }
 }
 
 /// The best ways to every state at one time, best first.
@@ -172,24 +220,29 @@ impl Layer {
     }
 }
 
-/// The message of one of the ways to the last state: a state's highest bit is the input that led to it.
+/// The message of one of the ways to the last state.
 fn trace(layers: &[Layer], rank: usize) -> u64 {
     let (mut state, mut rank, mut message) = (0, rank, 0);
-    for step in (1..=STEPS).rev() {
-        if step <= MESSAGE_BITS as usize {
-            let input = (state >> (MEMORY - 1)) as u64;
-            message |= input << (MESSAGE_BITS as usize - step);
-        }
-        let path = layers[step].paths(state)[rank];
+    for step in (0..STEPS).rev() {
+        message |= bit(step, state);
+        let path = layers[step + 1].paths(state)[rank];
         (state, rank) = (usize::from(path.state), usize::from(path.rank));
     }
     message
 }
 
+/// What a message has at a step that led to a state, whose highest bit was the input; behind the message there are zeros.
+fn bit(step: usize, state: usize) -> u64 {
+    let input = (state >> (MEMORY - 1)) as u64;
+    (input << MESSAGE_BITS)
+        .checked_shr(step as u32 + 1)
+        .unwrap_or(0)
+}
+
 /// In place: `y[r] = sum over t of x[t] * (-1)^popcount(r & t)`.
-fn walsh_hadamard(x: &mut [f64; REGISTERS]) {
+fn walsh_hadamard(x: &mut [f64; INNER]) {
     let mut half = 1;
-    while half < REGISTERS {
+    while half < INNER {
         for block in x.chunks_exact_mut(2 * half) {
             let (low, high) = block.split_at_mut(half);
             for (a, b) in low.iter_mut().zip(high) {

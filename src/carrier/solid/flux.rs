@@ -224,7 +224,7 @@ pub fn weight(energy: f64) -> f64 {
 }
 
 /// A box of lattice points with a value for each.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Grid<T> {
     pub low: [i32; 3],
     pub size: [usize; 3],
@@ -287,33 +287,99 @@ pub fn windows(clusters: &[Cluster], placement: &Placement) -> Vec<Window> {
     let positions = clusters
         .iter()
         .map(|cluster| placement.lattice(cluster.centre));
-    let mut sums = Grid::about(positions, RADIUS, (0.0, 0.0));
+    let grid = Grid::about(positions, RADIUS, ());
+    let mut sums = Sums::new(&grid);
     for cluster in clusters {
-        let y = placement.lattice(cluster.centre);
-        let area = back * cluster.area * per_area;
-        let moment = cluster.moment * per_area / placement.pitch;
-        let weight = cluster.weight * per_area;
-        for_each_near(y, RADIUS, |index, offset, q2| {
-            let place = sums.place(index);
-            let (flux, energy) = &mut sums.values[place];
-            let g = sensitivity(q2);
-            *flux += (1.0 - q2) * (1.0 - q2) * (offset.dot(area) + moment);
-            *energy += weight * g * g;
-        });
+        let piece = Cluster {
+            centre: placement.lattice(cluster.centre),
+            area: back * cluster.area * per_area,
+            moment: cluster.moment * per_area / placement.pitch,
+            weight: cluster.weight * per_area,
+        };
+        sums.add(&piece, &grid);
     }
-    let seen = sums
-        .values
-        .iter()
-        .enumerate()
-        .filter_map(|(place, &(flux, energy))| {
-            let weight = weight(energy);
-            let index = sums.index(place);
-            (weight > 0.0).then_some(Window {
-                index,
-                flux,
-                weight,
-                dither: 0.0,
-            })
-        });
-    seen.collect()
+    let window = |place| {
+        let weight = weight(sums.energies[place]);
+        (weight > 0.0).then(|| Window {
+            index: grid.index(place),
+            flux: sums.fluxes[place],
+            weight,
+            dither: 0.0,
+        })
+    };
+    (0..grid.values.len()).filter_map(window).collect()
+}
+
+/// Lattice points along an axis that a window of [`RADIUS`] can reach, rounded up to what a processor adds at once.
+const LANES: usize = 4;
+const REACHED: i32 = 3;
+
+/// The integrals of all windows of a grid. What a window sees of a piece beyond its radius is an exact 0, so that rows of
+/// windows are added to without asking which of them are near: that is four times as fast, and the sums are the same.
+struct Sums {
+    fluxes: Vec<f64>,
+    energies: Vec<f64>,
+}
+
+impl Sums {
+    fn new(grid: &Grid<()>) -> Sums {
+        let len = grid.values.len();
+        let spare = (grid.size[1] + 1) * grid.size[2] + LANES;
+        Sums {
+            fluxes: vec![0.0; len + spare],
+            energies: vec![0.0; len + spare],
+        }
+    }
+
+    /// Adds a piece in lattice coordinates.
+    fn add(&mut self, piece: &Cluster, grid: &Grid<()>) {
+        const SQUARE: f64 = RADIUS * RADIUS;
+        let (y, area) = (piece.centre, piece.area);
+        let [x0, y0, z0] = (y - RADIUS).to_array().map(ceil);
+        let z: [f64; LANES] = std::array::from_fn(|lane| y.z - f64::from(z0 + lane as i32));
+        let z_part = z.map(|z| z * area.z);
+        let z_square = z.map(|z| z * z);
+        for i in 0..REACHED {
+            let x = y.x - f64::from(x0 + i);
+            let start = grid.place([x0 + i, y0, z0]);
+            for j in 0..REACHED {
+                let dy = y.y - f64::from(y0 + j);
+                let plane = x * x + dy * dy;
+                if plane >= SQUARE {
+                    continue;
+                }
+                let across = x * area.x + dy * area.y;
+                let place = start + j as usize * grid.size[2];
+                let q2 = z_square.map(|z_square| (plane + z_square) / SQUARE);
+                let inside = q2.map(|q2| if q2 < 1.0 { 1.0 - q2 } else { 0.0 });
+                let flux = each(|lane| {
+                    inside[lane] * inside[lane] * (across + z_part[lane] + piece.moment)
+                });
+                let energy = each(|lane| {
+                    let g = inside[lane] * (3.0 - 7.0 * q2[lane]);
+                    piece.weight * g * g
+                });
+                add(&mut self.fluxes[place..], flux);
+                add(&mut self.energies[place..], energy);
+            }
+        }
+    }
+}
+
+fn each(f: impl FnMut(usize) -> f64) -> [f64; LANES] {
+    std::array::from_fn(f)
+}
+
+/// Adds terms to the first of some sums.
+fn add(sums: &mut [f64], terms: [f64; LANES]) {
+    if let Some(sums) = sums.first_chunk_mut::<LANES>() {
+        let added = each(|lane| sums[lane] + terms[lane]);
+        *sums = added;
+    }
+}
+
+/// The smallest whole number that is not below a coordinate.
+pub fn ceil(coordinate: f64) -> i32 {
+    let whole = coordinate as i32;
+    whole + i32::from(f64::from(whole) < coordinate)
 }

@@ -5,11 +5,12 @@
 //! as it is, in all turns of its frame; the surfaces that undo what may have been done to it; and the symbols that are no
 //! pilots, where the pilots agree best after a search of which they know nothing (docs/SECURITY.md).
 
-use super::flux::{Cluster, Window, windows};
+use super::field::{self, Field};
+use super::flux::{Cluster, Placement, Window, windows};
 use super::measurement::{Axes, Origin, Surface};
 use super::refine::{View, refine};
 use super::strength::{FAMILIES, blend, weights};
-use super::{AREAS, Lattice, STEPS, cosine, field, pitches};
+use super::{Lattice, STEPS, cosine};
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
 use crate::detection::Statistic;
@@ -17,6 +18,7 @@ use crate::key::Key;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// Pilots that agree better than this, in nats, end the search: what follows would only undo attacks that did not happen.
 const ENOUGH: f64 = 40.0;
@@ -34,8 +36,8 @@ const KINDS: usize = 3;
 const FOLLOWED: usize = 2;
 
 /// Reads surfaces with a key, in their order, until it is sure.
-pub fn read(
-    surfaces: &mut dyn Iterator<Item = Cow<Surface>>,
+pub fn read<'a>(
+    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
     key: &Key,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
@@ -43,9 +45,10 @@ pub fn read(
     let Some(suspect) = surfaces.next() else {
         return Ok(Reading::default());
     };
-    let mut search = Search::new(&lattice, &suspect);
+    let axes = suspect.axes;
+    let mut search = Search::new(&lattice, suspect);
     let num_surfaces = 2 + FAMILIES.iter().map(|family| family.len()).sum::<usize>();
-    let is_undetermined = suspect.axes.contains(&Axes::Undetermined);
+    let is_undetermined = axes.contains(&Axes::Undetermined);
     let share = if is_undetermined {
         SHARE_BEFORE_SCAN
     } else {
@@ -61,21 +64,59 @@ pub fn read(
         let Some(surface) = surfaces.next() else {
             break;
         };
-        search.look(&surface);
+        search.look(surface);
         looked += 1;
     }
     if is_undetermined && !search.is_sure() {
-        search.scan(suspect.axes, progress)?;
+        search.scan(axes, progress)?;
     }
     Ok(search.conclude())
 }
 
 /// A measured surface, as the pilots see it.
-struct Node {
-    origin: Origin,
-    clusters: Vec<Cluster>,
+struct Node<'a> {
+    surface: Cow<'a, Surface>,
+    clusters: OnceCell<Vec<Cluster>>,
     /// For each pitch and turn.
     pilots: Vec<Vec<Window>>,
+}
+
+impl<'a> Node<'a> {
+    fn new(surface: Cow<'a, Surface>) -> Node<'a> {
+        Node {
+            surface,
+            clusters: OnceCell::new(),
+            pilots: Vec::new(),
+        }
+    }
+
+    fn clusters(&self) -> &[Cluster] {
+        self.clusters.get_or_init(|| self.surface.store.clusters())
+    }
+
+    fn field(&self, pitch: f64) -> Option<&Field> {
+        self.surface
+            .fields
+            .iter()
+            .find(|field| field.pitch() == pitch)
+    }
+
+    /// The windows of a lattice in one of its pitches that are wanted, and the number of all.
+    fn windows(
+        &self,
+        placement: &Placement,
+        wanted: impl FnMut(&mut Window) -> bool,
+    ) -> (Vec<Window>, usize) {
+        match self.field(placement.pitch) {
+            Some(field) => field.windows(placement, wanted),
+            None => {
+                let mut seen = windows(self.clusters(), placement);
+                let num_seen = seen.len();
+                seen.retain_mut(wanted);
+                (seen, num_seen)
+            }
+        }
+    }
 }
 
 /// A way of reading.
@@ -94,7 +135,7 @@ struct Search<'a> {
     lattice: &'a Lattice,
     pitches: Vec<f64>,
     turns: Vec<DMat3>,
-    nodes: Vec<Node>,
+    nodes: Vec<Node<'a>>,
     num_windows: usize,
     /// The best ways of reading the suspect as it is, best first.
     own: Vec<Candidate>,
@@ -105,17 +146,10 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(lattice: &'a Lattice, suspect: &Surface) -> Search<'a> {
-        let area = suspect
-            .store
-            .clusters()
-            .iter()
-            .map(|cluster| cluster.weight)
-            .sum();
-        let fine_enough = |pitch: &f64| *pitch >= suspect.store.pitch;
+    fn new(lattice: &'a Lattice, suspect: Cow<'a, Surface>) -> Search<'a> {
         let mut search = Search {
             lattice,
-            pitches: pitches(area, AREAS).filter(fine_enough).collect(),
+            pitches: suspect.pitches(),
             turns: turns(suspect.axes != [Axes::Distinct; 2]),
             nodes: Vec::new(),
             num_windows: 0,
@@ -137,37 +171,33 @@ impl<'a> Search<'a> {
     }
 
     /// Looks at a surface, and at those between it and the last of its family.
-    fn look(&mut self, surface: &Surface) {
-        let clusters = surface.store.clusters();
-        let mut pilots = Vec::new();
+    fn look(&mut self, surface: Cow<'a, Surface>) {
+        let origin = surface.origin;
+        let mut node = Node::new(surface);
         for &pitch in &self.pitches {
             for &turn in &self.turns {
-                let mut seen = windows(&clusters, &self.lattice.placed(turn, pitch));
-                self.num_windows = self.num_windows.max(seen.len());
-                seen.retain_mut(|window| {
+                let is_pilot = |window: &mut Window| {
                     let (dither, symbol) = self.lattice.at(window.index);
                     window.dither = dither;
                     symbol == Symbol::Pilot
-                });
-                pilots.push(seen);
+                };
+                let placement = self.lattice.placed(turn, pitch);
+                let (pilots, num_windows) = node.windows(&placement, is_pilot);
+                self.num_windows = self.num_windows.max(num_windows);
+                node.pilots.push(pilots);
             }
         }
-        let node = Node {
-            origin: surface.origin,
-            clusters,
-            pilots,
-        };
         self.nodes.push(node);
         let last = self.nodes.len() - 1;
-        let Origin::Filtered { family, node } = surface.origin else {
+        let Origin::Filtered { family, node } = origin else {
             return self.consider(&[last], &[0.0], 0.0);
         };
-        let of_family = |node: &usize| match self.nodes[*node].origin {
+        let of_family = |node: &usize| match self.nodes[*node].surface.origin {
             Origin::Suspect => true,
             Origin::Refined => false,
             Origin::Filtered { family: other, .. } => other == family,
         };
-        let strength_of = |node: &usize| match self.nodes[*node].origin {
+        let strength_of = |node: &usize| match self.nodes[*node].surface.origin {
             Origin::Filtered { family, node } => {
                 FAMILIES[usize::from(family)].strength(node.into())
             }
@@ -226,10 +256,18 @@ impl<'a> Search<'a> {
         let share = (1.0 - SHARE_BEFORE_SCAN) / self.pitches.len() as f64;
         for (number, &pitch) in self.pitches.iter().enumerate() {
             let start = SHARE_BEFORE_SCAN + share * number as f64;
-            let clusters = &self.nodes[0].clusters;
-            let found = field::scan(clusters, axes, self.lattice, pitch, &mut |part| {
-                step(progress, Stage::Test, start + share * part)
-            })?;
+            let suspect = &self.nodes[0];
+            let field = match suspect.field(pitch) {
+                Some(field) => Cow::Borrowed(field),
+                None => Cow::Owned(Field::new(suspect.clusters(), pitch)),
+            };
+            let found = field::scan(
+                &field,
+                suspect.clusters(),
+                axes,
+                self.lattice,
+                &mut |part| step(progress, Stage::Test, start + share * part),
+            )?;
             let best = self.scanned.as_ref().map_or(0.0, |best| best.evidence);
             if found.evidence > best {
                 self.scanned = Some(Candidate {
@@ -247,14 +285,19 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// All windows of a candidate's surface at a view.
-    fn see(&self, candidate: &Candidate, view: &View) -> Vec<Window> {
+    /// All windows of a candidate's surface at a view, by what each surface shows of a placement.
+    fn see(
+        &self,
+        candidate: &Candidate,
+        view: &View,
+        windows: impl Fn(&Node, &Placement) -> Vec<Window>,
+    ) -> Vec<Window> {
         let parts = weights(&candidate.strengths, view.strength);
         let lists: Vec<(Vec<Window>, f64)> = parts
             .into_iter()
             .map(|(part, weight)| {
-                let clusters = &self.nodes[candidate.nodes[part]].clusters;
-                (windows(clusters, &view.placement), weight)
+                let node = &self.nodes[candidate.nodes[part]];
+                (windows(node, &view.placement), weight)
             })
             .collect();
         blend(
@@ -264,8 +307,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// All symbols of a candidate at a view.
-    fn symbols(&self, candidate: &Candidate, view: &View) -> Vec<SoftSymbol> {
+    /// What windows say, read with a candidate's step at a view.
+    fn symbols(&self, candidate: &Candidate, view: &View, windows: Vec<Window>) -> Vec<SoftSymbol> {
         let step = candidate.step / view.placement.pitch;
         let read = |window: Window| {
             let (dither, symbol) = self.lattice.at(window.index);
@@ -276,7 +319,7 @@ impl<'a> Search<'a> {
                 weight,
             }
         };
-        self.see(candidate, view).into_iter().map(read).collect()
+        windows.into_iter().map(read).collect()
     }
 
     fn conclude(&self) -> Reading {
@@ -285,14 +328,20 @@ impl<'a> Search<'a> {
             .iter()
             .map(|family| STRENGTHS * family.len())
             .sum::<usize>();
+        let declared = |node: &Node, placement: &Placement| node.windows(placement, |_| true).0;
+        // Small moves show in differences, where interpolation would show as well.
+        let exact = |node: &Node, placement: &Placement| windows(node.clusters(), placement);
         let mut hypotheses = Vec::new();
         for (candidates, num_declared) in [
             (&self.own, num_views),
             (&self.undone, num_views * num_undone),
         ] {
-            hypotheses.extend(candidates.iter().map(|candidate| Hypothesis {
-                symbols: self.symbols(candidate, &candidate.view),
-                ln_num_tests: libm::log((KINDS * num_declared) as f64),
+            hypotheses.extend(candidates.iter().map(|candidate| {
+                let view = &candidate.view;
+                Hypothesis {
+                    symbols: self.symbols(candidate, view, self.see(candidate, view, declared)),
+                    ln_num_tests: libm::log((KINDS * num_declared) as f64),
+                }
             }));
         }
         let to_refine = [
@@ -307,9 +356,9 @@ impl<'a> Search<'a> {
             let Some(candidate) = candidate.filter(is_worth_it) else {
                 continue;
             };
-            let see = |view: &View| self.see(candidate, view);
+            let see = |view: &View| self.see(candidate, view, exact);
             let view = refine(&see, &candidate.view, self.lattice, candidate.step);
-            let mut symbols = self.symbols(candidate, &view);
+            let mut symbols = self.symbols(candidate, &view, see(&view));
             symbols.retain(|soft| soft.symbol != Symbol::Pilot);
             hypotheses.push(Hypothesis {
                 symbols,

@@ -64,35 +64,41 @@ fn run(arguments: &Arguments) -> Result<PathBuf, String> {
         None => Seed::new(getrandom::u64().map_err(|error| error.to_string())?),
     };
     let (models, unread) = models::all(arguments.models.as_deref())?;
-    let (name, text) = if let Some(tests) = arguments.false_positives {
-        (
-            "FALSE_POSITIVES.md",
-            false_positives::table(&models, &seed, tests)?,
-        )
-    } else {
-        let models: Vec<_> = models
-            .into_iter()
-            .filter(|model| model.is_quick || !arguments.quick)
-            .collect();
-        let mut rows = grid::rows();
-        rows.retain(|row| row.is_quick || !arguments.quick);
-        let strengths = if arguments.quick {
-            &STRENGTHS[1..]
-        } else {
-            &STRENGTHS
-        };
-        let results = measure::all(&models, &rows, strengths, &seed);
-        (
-            "ROBUSTNESS.md",
-            report::table(&rows, &results, &unread, &seed, arguments.quick),
-        )
+    let name = match arguments.false_positives {
+        Some(_) => "FALSE_POSITIVES.md",
+        None => "ROBUSTNESS.md",
     };
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let path = arguments
         .output
         .clone()
         .unwrap_or_else(|| root.join("docs").join(name));
-    std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    let write = |text: &str| {
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    if let Some(tests) = arguments.false_positives {
+        false_positives::table(&models, &seed, tests, &write)?;
+        return Ok(path);
+    }
+    let models: Vec<_> = models
+        .into_iter()
+        .filter(|model| model.is_quick || !arguments.quick)
+        .collect();
+    let mut rows = grid::rows();
+    rows.retain(|row| row.is_quick || !arguments.quick);
+    let strengths = if arguments.quick {
+        &STRENGTHS[1..]
+    } else {
+        &STRENGTHS
+    };
+    let results = measure::all(&models, &rows, strengths, &seed);
+    write(&report::table(
+        &rows,
+        &results,
+        &unread,
+        &seed,
+        arguments.quick,
+    ))?;
     Ok(path)
 }
 

@@ -3,13 +3,14 @@
 use crate::support::fixtures::key;
 use glam::DVec3;
 use meshmark::attack::{noise, quantize, reorder, similarity, smooth};
-use meshmark::carrier::solid::{Measurement, num_windows};
+use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
 use meshmark::carrier::{Carrier, Host, Mark};
-use meshmark::code::Codeword;
+use meshmark::code::{Codeword, SoftSymbol};
 use meshmark::detection::Statistic;
 use meshmark::geometry::Distortion;
 use meshmark::ignore;
 use meshmark::mesh::{Admissible, Mesh, shapes};
+use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0f1_2345_6789_abcd;
@@ -20,10 +21,14 @@ fn rock() -> Mesh {
 
 /// Marks a mesh at a strength of 0.08 %.
 fn marked(mesh: &Mesh, owner: u8) -> Mesh {
+    marked_at(mesh, owner, 0.0008)
+}
+
+fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
     let host = Host {
         mesh,
         admissible: &Admissible::default(),
-        rms_rel: 0.0008,
+        rms_rel,
         on_top: false,
     };
     let mark = Mark {
@@ -130,6 +135,45 @@ fn solid_measurement_is_its_bytes() {
     assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Some(&measurement));
     assert_eq!(Measurement::from_bytes(&bytes[..bytes.len() - 1]), None);
     assert!(bytes.len() < 2_000_000);
+}
+
+/// Where both readings see a window, the RMS distance of their phases is below 2 % of the quantizer's step. A distance is what
+/// the cosines show of it: never more than it is.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_tables_err_by_less_than_two_percent_of_a_step() {
+    for (shape, rms_rel) in [
+        (rock(), 0.0002),
+        (shapes::cad_part(), 0.0002),
+        (shapes::game_asset(), 0.0004),
+    ] {
+        let measurement: Measurement = Surfaces::new(&marked_at(&shape, 1, rms_rel))
+            .take(1)
+            .collect();
+        let [alone, tables] = [measurement.clone(), measurement.for_many_keys()].map(|m| {
+            let reading = m.read(&key(1), &mut ignore).unwrap();
+            reading.hypotheses.into_iter().next().unwrap().symbols
+        });
+        let mut rest = tables.iter();
+        let mut distances = Vec::new();
+        for soft in &alone {
+            // Windows that hardly see anything are missing from one or the other.
+            let mut ahead = rest.clone();
+            let same = ahead.by_ref().take(20).find(|other| {
+                other.symbol == soft.symbol && (other.weight - soft.weight).abs() < 0.04
+            });
+            if let Some(same) = same {
+                rest = ahead;
+                let phase = |soft: &SoftSymbol| libm::acos(soft.value / soft.weight) / TAU;
+                distances.push(phase(same) - phase(soft));
+            }
+        }
+        assert!(
+            distances.len() > alone.len() * 9 / 10,
+            "most windows are in both"
+        );
+        let square = distances.iter().map(|d| d * d).sum::<f64>() / distances.len() as f64;
+        assert!(square.sqrt() < 0.02, "{} steps at {rms_rel}", square.sqrt());
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -9,6 +9,7 @@ import { glbFromObj, sharedModel } from "../tests/support.mjs";
 import { startChromium } from "./chromium.mjs";
 import { prepareNative } from "./native.mjs";
 import { markdown } from "./report.mjs";
+import { readStages } from "./stages.mjs";
 
 const OWNER = "Bench Owner";
 const PASSPHRASE = "a passphrase for benchmarks only";
@@ -21,6 +22,7 @@ const { values: options } = parseArgs({
     cli: { type: "string" },
     module: { type: "string" },
     "gzip-budget": { type: "string" },
+    stages: { type: "string" },
     "native-rustc": { type: "string" },
     "wasm-rustc": { type: "string" },
     output: { type: "string" },
@@ -59,6 +61,7 @@ writeFileSync(
   options.output,
   markdown({
     samples,
+    stages: readStages(options.stages),
     module: readFileSync(options.module),
     gzipBudget: Number(options["gzip-budget"]),
     host: { name: host.name, bytes: host.bytes.length, vertices: report.vertices, triangles: meshmark.inspect(host.bytes).triangles },

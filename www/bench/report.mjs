@@ -12,12 +12,13 @@ const COMMANDS = {
 /**
  * @param samples by command, of every run the results `native`, `first` and `second` with `ms` by stage, the latter two also
  * with `memoryBytes`
+ * @param stages what `readStages` gives
  */
-export function markdown({ samples, module, gzipBudget, host, rustc, chromium }) {
+export function markdown({ samples, stages, module, gzipBudget, host, rustc, chromium }) {
   const gzip = gzipSync(module, { level: 9 }).length;
   return `# Performance
 
-\`cargo xtask bench\` wrote this on ${new Date().toISOString().slice(0, 10)}. For one stage at a time, natively and with statistics: \`cargo bench\`.
+\`cargo xtask bench\` wrote this on ${new Date().toISOString().slice(0, 10)}.
 
 ## Size of the WebAssembly module
 
@@ -49,6 +50,14 @@ ${rows(samples, ({ title, stages }, runs) => stages.map((stage) => timesRow(titl
 * \`extract\` ends as soon as it is sure: of a marked model it measures the surface as it is, and no smoothing is undone.
 * Native key derivation is how much longer a process lives with a passphrase than with a key file.
 * Chromium's clock has steps of 0.1 ms.
+
+## Stages
+
+Natively, on generated models, one stage at a time: medians of \`cargo bench\`, with statistics in \`target/criterion\`. The last
+column is for each vertex or, of one more key, for each way of reading that is declared: a turn of the frame, a pitch and a step
+of SOLID, an address kind and a cut of RING. A key of a list is read from tables.
+
+${stages.map(stageTable).join("\n\n")}
 
 ## Memory of the module
 
@@ -96,6 +105,16 @@ function statistics(values) {
 
 function cell({ median, least, most }) {
   return `${median.toFixed(1)} (${least.toFixed(1)}–${most.toFixed(1)})`;
+}
+
+function stageTable({ title, stages }) {
+  const row = ({ name, ms, elements }) => `| ${name} | ${precise(ms)} | ${precise((1000 * ms) / elements)} |`;
+  return [`| ${title} | ms | µs each |`, "|---|--:|--:|", ...stages.map(row)].join("\n");
+}
+
+/** Three digits. */
+function precise(number) {
+  return number >= 100 ? number.toFixed(0) : number.toPrecision(3);
 }
 
 function memoryRow(title, runs) {

@@ -27,6 +27,7 @@ pub fn bench(steps: &mut Steps, runs: u32) -> Result<()> {
     steps.run("wasm module", || builder.package())?;
     steps.run("page", page::build)?;
     let browser = steps.run("Chromium", browser::set_up)?;
+    steps.run("stages", time_stages)?;
     steps.run("measurements", || {
         let Manifest {
             name,
@@ -44,11 +45,35 @@ pub fn bench(steps: &mut Steps, runs: u32) -> Result<()> {
             .args(["--cli", &format!("target/release/{name}")])
             .args(["--module", &format!("{out_dir}/{name}_bg.wasm")])
             .args(["--gzip-budget", &gzip_budget_bytes.to_string()])
+            .args(["--stages", STAGES])
             .args(["--native-rustc", &native_rustc])
             .args(["--wasm-rustc", &wasm_rustc])
             .args(["--output", "docs/PERFORMANCE.md"]);
         run(&mut node, "see the error above")
     })
+}
+
+/// Where criterion writes what it measured of each stage.
+const STAGES: &str = "target/criterion";
+
+/// Times the stages one by one.
+fn time_stages() -> Result<()> {
+    let folder = project::root().join(STAGES);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|error| {
+            Failure::new(
+                format!("{}: {error}", folder.display()),
+                "remove that folder",
+            )
+        })?;
+    }
+    run(
+        Command::new("cargo")
+            .args(["bench", "--bench", "pipeline", "--target-dir", "target"])
+            .env("CRITERION_HOME", folder)
+            .current_dir(project::root()),
+        "correct what the compiler names above",
+    )
 }
 
 /// A number of runs as the command line gives it.

@@ -153,7 +153,7 @@ impl Embedder<'_> {
     ) -> Result<(), Cancelled> {
         let placement = self.lattice.placed(DMat3::IDENTITY, pitch);
         let mut active = windows(&clusters(self.mesh, &self.pose, pitch), &placement);
-        if active.len() < NEEDED_WINDOWS {
+        if active.len().min(3 * self.mesh.positions.len()) < NEEDED_WINDOWS {
             return Ok(());
         }
         // What is to be added to a window's phase so that whole numbers carry its symbol.

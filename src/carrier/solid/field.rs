@@ -4,7 +4,7 @@
 //! for lists of keys, each with a lattice of its own; and for scans: shapes of revolution do not say how far they were
 //! turned about their axis, nor do near-spheres say how they stand at all.
 
-use super::flux::{Cluster, Grid, Placement, RADIUS, Window, ceil, weight};
+use super::flux::{Cluster, Grid, Placement, RADIUS, Window, ceil, floor, weight};
 use super::measurement::Axes;
 use super::{Lattice, STEPS, cosine};
 use crate::code::Symbol;
@@ -23,15 +23,22 @@ const LEAST_ENERGY: f32 = 0.1;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     pitch: f64,
-    grid: Grid<[f32; 2]>,
+    /// In units: a table half as large is twice as near.
+    grid: Grid<[i16; 2]>,
+    units: [f32; 2],
+    /// The grid in blocks, and a bit for each of their points: whether there is energy.
+    blocks: Vec<u64>,
 }
+
+/// Grid points along a block's edge.
+const BLOCK: usize = 4;
 
 impl Field {
     /// The field of a surface.
     pub fn new(clusters: &[Cluster], pitch: f64) -> Field {
         let scale = FINENESS / pitch;
         let positions = clusters.iter().map(|cluster| cluster.centre * scale);
-        let mut sums = Grid::about(positions, FINENESS * RADIUS + 2.0, [0.0; 2]);
+        let mut sums = Grid::about(positions, FINENESS * RADIUS + 2.0, [0.0f32; 2]);
         let per_area = 1.0 / (pitch * pitch);
         for cluster in clusters {
             let piece = Cluster {
@@ -43,7 +50,39 @@ impl Field {
             add(&piece, &mut sums);
         }
         interpolate(&mut sums);
-        Field { pitch, grid: sums }
+        let units = [0, 1].map(|part| {
+            let sizes = sums.values.iter().map(|value| value[part].abs());
+            sizes.fold(1e-30, f32::max) / f32::from(i16::MAX)
+        });
+        let rounded =
+            |value: &[f32; 2]| [0, 1].map(|part| (value[part] / units[part]).round() as i16);
+        let mut field = Field {
+            pitch,
+            grid: Grid {
+                low: sums.low,
+                size: sums.size,
+                values: sums.values.iter().map(rounded).collect(),
+            },
+            units,
+            blocks: vec![0; sums.size.map(|size| size.div_ceil(BLOCK)).iter().product()],
+        };
+        for (place, value) in sums.values.iter().enumerate() {
+            if value[1] > LEAST_ENERGY {
+                let index = sums.index(place);
+                let offset = std::array::from_fn(|axis| (index[axis] - sums.low[axis]) as usize);
+                let (block, bit) = field.block(offset);
+                field.blocks[block] |= bit;
+            }
+        }
+        field
+    }
+
+    /// The block of a grid point and its bit there, by its distance from the lowest.
+    fn block(&self, [i, j, k]: [usize; 3]) -> (usize, u64) {
+        let [_, y, z] = self.grid.size.map(|size| size.div_ceil(BLOCK));
+        let block = (i / BLOCK * y + j / BLOCK) * z + k / BLOCK;
+        let bit = (i % BLOCK * BLOCK + j % BLOCK) * BLOCK + k % BLOCK;
+        (block, 1 << bit)
     }
 
     /// The pitch that the field is for.
@@ -58,16 +97,14 @@ impl Field {
 
     /// The grid point below a scaled point, if what is needed to interpolate there is within the grid.
     fn below(&self, scaled: DVec3) -> Option<usize> {
-        let index = scaled
-            .floor()
-            .to_array()
-            .map(|coordinate| coordinate as i32);
-        let inside = (0..3).all(|axis| {
-            let offset = i64::from(index[axis]) - i64::from(self.grid.low[axis]);
-            offset >= 1 && offset + 2 < self.grid.size[axis] as i64
-        });
-        let place = inside.then(|| self.grid.place(index))?;
-        (self.grid.values[place][1] > LEAST_ENERGY).then_some(place)
+        let index = scaled.to_array().map(floor);
+        let offset: [usize; 3] =
+            std::array::from_fn(|axis| index[axis].wrapping_sub(self.grid.low[axis]) as usize);
+        if !(0..3).all(|axis| (1..self.grid.size[axis] - 2).contains(&offset[axis])) {
+            return None;
+        }
+        let (block, bit) = self.block(offset);
+        (self.blocks[block] & bit != 0).then(|| self.grid.place(index))
     }
 
     /// Whether a window about a point sees anything to speak of.
@@ -83,19 +120,25 @@ impl Field {
 
     /// The same at a scaled point, from the place of the grid point below it.
     fn between(&self, place: usize, scaled: DVec3) -> Option<(f64, f64)> {
-        let [x, y, z] = (scaled - scaled.floor()).to_array().map(splines);
+        let [x, y, z] = scaled
+            .to_array()
+            .map(|coordinate| splines(coordinate - f64::from(floor(coordinate))));
         let (plane, row) = (self.grid.size[1] * self.grid.size[2], self.grid.size[2]);
-        let (mut flux, mut energy) = (0.0, 0.0);
+        let mut sums = [[0.0f32; 2]; 4];
         for (i, x) in x.iter().enumerate() {
             for (j, y) in y.iter().enumerate() {
                 let start = place + i * plane + j * row - plane - row - 1;
-                for (value, z) in self.grid.values[start..start + 4].iter().zip(z) {
-                    let share = x * y * z;
-                    flux += share * f64::from(value[0]);
-                    energy += share * f64::from(value[1]);
+                let share = x * y;
+                for (sum, value) in sums.iter_mut().zip(&self.grid.values[start..start + 4]) {
+                    sum[0] += share * f32::from(value[0]);
+                    sum[1] += share * f32::from(value[1]);
                 }
             }
         }
+        let [flux, energy] = [0, 1].map(|part| {
+            let terms = sums.iter().zip(z).map(|(sum, z)| sum[part] * z);
+            f64::from(self.units[part] * terms.sum::<f32>())
+        });
         let weight = weight(energy.max(0.0));
         (weight > 0.0).then_some((flux, weight))
     }
@@ -204,14 +247,15 @@ fn add(piece: &Cluster, sums: &mut Grid<[f32; 2]>) {
 }
 
 /// The values of the cubic B-splines about the points -1, 0, 1 and 2 at t, 0 to 1.
-fn splines(t: f64) -> [f64; 4] {
+fn splines(t: f64) -> [f32; 4] {
     let u = 1.0 - t;
-    [
+    let splines = [
         u * u * u / 6.0,
         (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0,
         (4.0 - 3.0 * u * u * (2.0 - u)) / 6.0,
         t * t * t / 6.0,
-    ]
+    ];
+    splines.map(|spline| spline as f32)
 }
 
 /// Replaces values by the coefficients of the cubic B-splines that go through them: a recursive filter there and back along
@@ -228,7 +272,9 @@ fn interpolate(grid: &mut Grid<[f32; 2]>) {
                 *value = [0, 1].map(|part| value[part] + POLE * before[part]);
             }
             for place in (0..line.len()).rev() {
-                let after = line.get(place + stride).map_or([0.0; 2], |value| value.map(|v| v / 6.0));
+                let after = line
+                    .get(place + stride)
+                    .map_or([0.0; 2], |value| value.map(|v| v / 6.0));
                 let value = &mut line[place];
                 *value = [0, 1].map(|part| 6.0 * POLE * (after[part] - value[part]));
             }
@@ -291,9 +337,7 @@ pub fn scan(
             best.truncate(REVIEWED);
         }
     }
-    let reviewed = best
-        .iter()
-        .map(|found| field.look(&pilots, found.turn));
+    let reviewed = best.iter().map(|found| field.look(&pilots, found.turn));
     let nothing = Found {
         evidence: 0.0,
         turn: DMat3::IDENTITY,

@@ -383,3 +383,9 @@ pub fn ceil(coordinate: f64) -> i32 {
     let whole = coordinate as i32;
     whole + i32::from(f64::from(whole) < coordinate)
 }
+
+/// The largest whole number that is not above a coordinate.
+pub fn floor(coordinate: f64) -> i32 {
+    let whole = coordinate as i32;
+    whole - i32::from(f64::from(whole) > coordinate)
+}

@@ -53,13 +53,21 @@ pub fn refine(
     climb(see, &wide, lattice, step, 0.003, [0.25, 0.6, 1.2])
 }
 
-/// Pilots in the linear model of a view's neighbourhood.
+/// Pilots that a processor works on at once.
+const LANES: usize = 4;
+type Lanes = [f64; LANES];
+
+/// Pilots in the linear model of a view's neighbourhood. Those that fill up the last weigh nothing.
+#[derive(Clone, Copy, Default)]
 struct Pilots {
     /// In steps, at the view.
-    phases: Vec<f64>,
-    slopes: Vec<Nudge>,
-    weights: Vec<f64>,
+    phases: Lanes,
+    slopes: [Lanes; FREEDOMS],
+    weights: Lanes,
 }
+
+/// All pilots, by which a nudge is judged.
+struct Model(Vec<Pilots>);
 
 fn climb(
     see: &dyn Fn(&View) -> Vec<Window>,
@@ -69,7 +77,7 @@ fn climb(
     spread: f64,
     spreads: [f64; 3],
 ) -> View {
-    let pilots = Pilots::new(see, start, lattice, step / start.placement.pitch);
+    let model = Model::new(see, start, lattice, step / start.placement.pitch);
     let mut random = Random::new(0x50_4f_53_45);
     let nudges: Vec<(f64, Nudge)> = (0..TRIED)
         .map(|number| {
@@ -79,18 +87,18 @@ fn climb(
                 spread * spreads[number % 3]
             };
             let nudge = std::array::from_fn(|_| size * random.normal());
-            (pilots.agreement(&nudge), nudge)
+            (model.agreement(&nudge), nudge)
         })
         .collect();
     // The best come first; where none is better, the start itself is followed.
     let order = order_by(nudges.iter().map(|(agreement, _)| descending(*agreement)));
-    let curvature = pilots.curvature();
+    let curvature = model.curvature();
     let best = order
         .iter()
         .take(FOLLOWED)
         .map(|&(_, number)| nudges[number as usize].1)
         .chain([nudges[0].1])
-        .map(|nudge| pilots.uphill(nudge, &curvature))
+        .map(|nudge| model.uphill(nudge, &curvature))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or(*start, |(_, nudge)| start.nudged(&nudge))
 }
@@ -106,12 +114,23 @@ fn descending(number: f64) -> u64 {
 }
 
 impl Pilots {
+    /// Phases after a nudge.
+    fn phases(&self, nudge: &Nudge) -> Lanes {
+        let mut moved = [0.0; LANES];
+        for (slopes, x) in self.slopes.iter().zip(nudge) {
+            moved = std::array::from_fn(|lane| moved[lane] + slopes[lane] * x);
+        }
+        std::array::from_fn(|lane| self.phases[lane] + moved[lane])
+    }
+}
+
+impl Model {
     fn new(
         see: &dyn Fn(&View) -> Vec<Window>,
         start: &View,
         lattice: &Lattice,
         step: f64,
-    ) -> Pilots {
+    ) -> Model {
         let pilots: Vec<_> = see(start)
             .into_iter()
             .filter_map(|window| {
@@ -119,7 +138,12 @@ impl Pilots {
                 (symbol == Symbol::Pilot).then_some((window, dither))
             })
             .collect();
-        let mut slopes = vec![[0.0; FREEDOMS]; pilots.len()];
+        let mut model = vec![Pilots::default(); pilots.len().div_ceil(LANES)];
+        for (number, (window, dither)) in pilots.iter().enumerate() {
+            let some = &mut model[number / LANES];
+            some.phases[number % LANES] = window.flux / step + dither;
+            some.weights[number % LANES] = window.weight;
+        }
         let num_moving = if start.strength > 0.0 {
             FREEDOMS
         } else {
@@ -129,45 +153,38 @@ impl Pilots {
             let mut nudge = [0.0; FREEDOMS];
             nudge[axis] = EPSILON;
             let nudged = see(&start.nudged(&nudge));
-            for ((window, _), slope) in pilots.iter().zip(&mut slopes) {
+            for (number, (window, _)) in pilots.iter().enumerate() {
                 if let Ok(found) = nudged.binary_search_by_key(&window.index, |other| other.index) {
-                    slope[axis] = (nudged[found].flux - window.flux) / (EPSILON * step);
+                    model[number / LANES].slopes[axis][number % LANES] =
+                        (nudged[found].flux - window.flux) / (EPSILON * step);
                 }
             }
         }
-        Pilots {
-            phases: pilots
-                .iter()
-                .map(|(window, dither)| window.flux / step + dither)
-                .collect(),
-            slopes,
-            weights: pilots.iter().map(|(window, _)| window.weight).collect(),
-        }
-    }
-
-    fn phase(&self, pilot: usize, nudge: &Nudge) -> f64 {
-        let slope: f64 = self.slopes[pilot]
-            .iter()
-            .zip(nudge)
-            .map(|(slope, x)| slope * x)
-            .sum();
-        self.phases[pilot] + slope
+        Model(model)
     }
 
     fn agreement(&self, nudge: &Nudge) -> f64 {
-        (0..self.phases.len())
-            .map(|p| self.weights[p] * cosine(self.phase(p, nudge)))
-            .sum()
+        let mut sum = 0.0;
+        for some in &self.0 {
+            let cosines = some.phases(nudge).map(cosine);
+            for (weight, cosine) in some.weights.iter().zip(cosines) {
+                sum += weight * cosine;
+            }
+        }
+        sum
     }
 
     /// The mean curvature of the agreement: half of `(2 pi)^2 sum w slope slope^T`.
     fn curvature(&self) -> [Nudge; FREEDOMS] {
         let mut curvature = [[0.0; FREEDOMS]; FREEDOMS];
-        for (slope, weight) in self.slopes.iter().zip(&self.weights) {
-            for (row, a) in curvature.iter_mut().zip(slope) {
-                row.iter_mut()
-                    .zip(slope)
-                    .for_each(|(entry, b)| *entry += 0.5 * TAU * TAU * weight * a * b);
+        for some in &self.0 {
+            for lane in 0..LANES {
+                let weight = 0.5 * TAU * TAU * some.weights[lane];
+                for (row, a) in curvature.iter_mut().zip(&some.slopes) {
+                    for (entry, b) in row.iter_mut().zip(&some.slopes) {
+                        *entry += weight * a[lane] * b[lane];
+                    }
+                }
             }
         }
         curvature
@@ -177,13 +194,14 @@ impl Pilots {
     fn uphill(&self, mut nudge: Nudge, curvature: &[Nudge; FREEDOMS]) -> (f64, Nudge) {
         for _ in 0..CLIMBS {
             let mut gradient = [0.0; FREEDOMS];
-            for p in 0..self.phases.len() {
-                let sine = cosine(self.phase(p, &nudge) - 0.25);
-                let push = -TAU * self.weights[p] * sine;
-                gradient
-                    .iter_mut()
-                    .zip(&self.slopes[p])
-                    .for_each(|(g, slope)| *g += push * slope);
+            for some in &self.0 {
+                let sines = some.phases(&nudge).map(|phase| cosine(phase - 0.25));
+                for lane in 0..LANES {
+                    let push = -TAU * some.weights[lane] * sines[lane];
+                    for (g, slopes) in gradient.iter_mut().zip(&some.slopes) {
+                        *g += push * slopes[lane];
+                    }
+                }
             }
             let step = solve(*curvature, gradient);
             nudge

@@ -1,6 +1,6 @@
 //! The seed paper's study: what smoothing does to the vertices that a mark would be in.
 //!
-//! Every function answers one question about one mesh; a mesh of the paper's size is made by [`brought`].
+//! Every function answers one question about one mesh; a mesh of the paper's size is made by [`Preparation`].
 
 pub mod errors;
 mod hosts;
@@ -13,7 +13,7 @@ pub use map::{Fields, Tracing, fields, trace};
 pub use smoothing::Smoothing;
 pub use spread::Spread;
 
-use crate::attack::simplify_to;
+use crate::attack::{optimize, simplify_to};
 use crate::carrier::osveta::{Ranking, rank};
 use crate::mesh::Mesh;
 use crate::random::Random;
@@ -21,9 +21,44 @@ use crate::random::Random;
 /// Faces of the paper's model after its simplification.
 pub const NUM_FACES: usize = 11_732;
 
-/// A mesh as the paper's: simplified to [`NUM_FACES`] if it has more.
-pub fn brought(mesh: &Mesh) -> Mesh {
-    simplify_to(mesh, NUM_FACES)
+/// How a mesh is brought to the paper's size.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Preparation {
+    /// As the paper does, by a face threshold: it leaves thin triangles.
+    Optimize,
+    /// By quadric error metrics: it leaves triangles that follow the shape.
+    Simplify,
+}
+
+impl Preparation {
+    /// Both.
+    pub const ALL: [Preparation; 2] = [Preparation::Optimize, Preparation::Simplify];
+
+    /// The name that scripts and pages use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Preparation::Optimize => "optimize",
+            Preparation::Simplify => "simplify",
+        }
+    }
+
+    /// The preparation of a name.
+    pub fn from_name(name: &str) -> Option<Preparation> {
+        Self::ALL
+            .into_iter()
+            .find(|preparation| preparation.name() == name)
+    }
+
+    /// A mesh of [`NUM_FACES`] at most.
+    pub fn apply(self, mesh: &Mesh) -> Mesh {
+        match self {
+            Preparation::Optimize => optimize(mesh, NUM_FACES),
+            Preparation::Simplify => simplify_to(mesh, NUM_FACES),
+        }
+    }
 }
 
 /// The vertices in decreasing order of stability, equals at random: by index the original vertices, which come first in every

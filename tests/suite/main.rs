@@ -27,5 +27,6 @@ mod robustness;
 mod scene;
 mod smoothing;
 mod solid;
+mod study;
 mod support;
 mod watermark;

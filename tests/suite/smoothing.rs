@@ -3,8 +3,8 @@
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::attack::{
-    bilaplacian, catmull_clark, mean_curvature_flow, mean_filter, noise, simplify_to, smooth,
-    taubin,
+    bilaplacian, catmull_clark, mean_curvature_flow, mean_filter, noise, optimize, simplify_to,
+    smooth, taubin,
 };
 use meshmark::geometry::{Quadrature, dihedrals, face_areas};
 use meshmark::mesh::{Edges, Mesh, shapes};
@@ -247,4 +247,29 @@ fn smoothing_simplification_places_its_faces_well() {
     assert_eq!(simple.triangles.len(), 1280);
     let (error, inscribed) = (sphere_error(&simple), sphere_error(&shapes::icosphere(3)));
     assert!(error < 0.4 * inscribed, "{error} {inscribed}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn smoothing_optimization_merges_what_is_flat_first() {
+    let mut plane = shapes::terrain(20);
+    plane.positions.iter_mut().for_each(|p| p.z = 0.0);
+    let merged = optimize(&plane, 0);
+    let border = Edges::new(&plane).num_boundary();
+    assert_eq!(Edges::new(&merged).num_boundary(), border, "borders stay");
+    assert!(
+        merged.positions.len() < border + 8,
+        "hardly a vertex is left inside"
+    );
+    assert!((merged.area() - 1.0).abs() < 1e-12);
+    let mesh = asteroid();
+    let optimized = optimize(&mesh, 3000);
+    assert_eq!(optimized.triangles.len(), 3000);
+    assert_eq!(Edges::new(&optimized).num_boundary(), 0);
+    assert!(!Edges::new(&optimized).winding().flips.contains(&true));
+    let is_kept = |p: &DVec3| mesh.positions.contains(p);
+    assert!(
+        optimized.positions.iter().all(is_kept),
+        "vertices go, and none moves"
+    );
+    assert_eq!(optimize(&Mesh::default(), 0), Mesh::default());
 }

@@ -33,13 +33,14 @@ pub fn optimize(mesh: &Mesh, num_faces: usize) -> Mesh {
 }
 
 fn sweep(editable: &mut Editable, threshold: f64, num_faces: usize) {
-    for [kept, lost] in editable.edges() {
+    for lost in 0..editable.positions.len() as u32 {
         if editable.num_faces() <= num_faces {
             break;
         }
-        let is_inside = editable.apexes(kept, lost).len() == 2 && !editable.is_border(lost);
-        if is_inside && is_flat(editable, lost, threshold) {
-            editable.collapse(kept, lost, editable.at(kept));
+        if is_flat(editable, lost, threshold) && !editable.is_border(lost) {
+            let neighbours = editable.neighbours(lost).into_iter();
+            let mut lower = neighbours.filter(|&neighbour| neighbour < lost);
+            lower.any(|kept| editable.collapse(kept, lost, editable.at(kept)));
         }
     }
 }

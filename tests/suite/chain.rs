@@ -292,7 +292,7 @@ fn equation_7_recovers_the_bit() {
         let y = qim.embed(&x, symbol as usize, bit);
         let evidence = qim.evidence(&y, symbol as usize);
         assert_eq!(evidence < 0.0, bit, "the offsets of eq. 5 agree in both");
-        assert!((evidence.abs() - 8.0).abs() < 1e-6, "{evidence}");
+        assert!((evidence.abs() - 3.125).abs() < 1e-6, "{evidence}");
         // Disturbed by less than a quarter of a step, along whatever direction.
         let disturbed: Vec<f64> = y.iter().map(|y| y + 0.024 / 3f64.sqrt()).collect();
         let evidence = qim.evidence(&disturbed, symbol as usize);

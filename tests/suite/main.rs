@@ -13,6 +13,7 @@ mod code;
 mod curvature;
 mod detection;
 mod document;
+mod errors;
 mod evidence;
 mod geometry;
 mod golden;

@@ -3,7 +3,8 @@
 use super::sparse_qim::SparseQim;
 use super::spherical::{Barycentre, Spherical};
 use crate::carrier::CarrierError;
-use crate::code::{Block, Decoded, run_length};
+use crate::code::run_length::{self, Channel};
+use crate::code::{Block, Decoded};
 use crate::geometry::diagonal;
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -14,15 +15,6 @@ const ELEMENTS: usize = 3;
 
 /// Moving hosts moves the barycentre and the scale that their distances are measured by: after so many rounds no more.
 const ROUNDS: usize = 5;
-
-/// Evidence of one symbol is cut off here: hosts may have been taken for others.
-const MOST: f64 = 8.0;
-
-/// What the detector takes the hosts to have gone through: hardly a loss, hardly a gain.
-const CHANNEL: run_length::Channel = run_length::Channel {
-    insertion: 1e-3,
-    deletion: 1e-3,
-};
 
 /// What embedder and detector agree on.
 #[derive(Clone, Copy)]
@@ -118,13 +110,14 @@ impl Chain<'_> {
         })
     }
 
-    /// Reads a message from where the hosts are now, in the order of embedding; `None` for those that are lost. Hosts beyond
-    /// the message's do no harm.
+    /// Reads a message from where the hosts are now, in the order of embedding; `None` for those that are lost, which are erasures
+    /// of their symbols. The channel says what else may have happened to the order. Hosts beyond the message's do no harm.
     pub fn read(
         &self,
         spherical: &Spherical,
         hosts: impl Iterator<Item = Option<DVec3>>,
         step: f64,
+        channel: Channel,
     ) -> Received {
         let qim = SparseQim::new(self.key, ELEMENTS, step);
         let radii: Vec<Option<f64>> = hosts
@@ -134,11 +127,11 @@ impl Chain<'_> {
         let (groups, _) = radii.as_chunks::<ELEMENTS>();
         let evidence = |(number, group): (usize, &[Option<f64>; ELEMENTS])| {
             let group: Option<Vec<f64>> = group.iter().copied().collect();
-            group.map(|radii| qim.evidence(&radii, number).clamp(-MOST, MOST))
+            group.map(|radii| qim.evidence(&radii, number))
         };
         let symbols: Vec<Option<f64>> = groups.iter().enumerate().map(evidence).collect();
         let soft: Vec<f64> = symbols.iter().map(|soft| soft.unwrap_or(0.0)).collect();
-        let bits = run_length::decode(&soft, self.block.code_bits(), CHANNEL);
+        let bits = run_length::decode(&soft, self.block.code_bits(), channel);
         Received {
             symbols,
             decoded: self.block.decode(&bits),

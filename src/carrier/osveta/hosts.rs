@@ -3,6 +3,7 @@
 use super::chain::{Chain, Received};
 use super::spherical::{Spherical, frame};
 use super::stability::{Ranking, rank};
+use crate::code::run_length::Channel;
 use crate::geometry::{Pose, Surface};
 use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
@@ -14,6 +15,21 @@ pub(super) const TURNS: [DVec3; 4] = [
     DVec3::new(-1.0, 1.0, -1.0),
     DVec3::new(-1.0, -1.0, 1.0),
 ];
+
+/// Hosts that are known by name come in their order.
+const IN_ORDER: Channel = Channel {
+    insertion: 0.0,
+    deletion: 0.0,
+};
+
+/// What is hoped of a second ranking.
+const NEARLY_IN_ORDER: Channel = Channel {
+    insertion: 0.05,
+    deletion: 0.05,
+};
+
+/// A vertex stands for the surface in a direction that it is off by less than this share of its triangle's size.
+const OFF: f64 = 0.25;
 
 /// Vertices by which turns of an original are compared.
 const SAMPLES: usize = 400;
@@ -30,16 +46,26 @@ impl Chain<'_> {
         hosts: &[Option<u32>],
         step: f64,
     ) -> Option<Received> {
-        let spherical = Spherical::of(suspect, self.barycentre)?;
-        let point = |host: &Option<u32>| suspect.positions.get((*host)? as usize).copied();
-        Some(self.read(&spherical, hosts.iter().map(point), step))
+        self.read_at(suspect, hosts.iter().copied(), step, IN_ORDER)
     }
 
     /// The blind way of the paper: the suspect's own ranking is taken for that of the host mesh. It is not: the mark itself
     /// changes the order, and a permutation is nothing that a code against losses and gains could mend.
     pub fn read_ranked(&self, suspect: &Mesh, ranking: Ranking, step: f64) -> Option<Received> {
-        let hosts: Vec<Option<u32>> = rank(suspect, ranking).order.into_iter().map(Some).collect();
-        self.read_traced(suspect, &hosts, step)
+        let hosts = rank(suspect, ranking).order.into_iter().map(Some);
+        self.read_at(suspect, hosts, step, NEARLY_IN_ORDER)
+    }
+
+    fn read_at(
+        &self,
+        suspect: &Mesh,
+        hosts: impl Iterator<Item = Option<u32>>,
+        step: f64,
+        channel: Channel,
+    ) -> Option<Received> {
+        let spherical = Spherical::of(suspect, self.barycentre)?;
+        let point = |host: Option<u32>| suspect.positions.get(host? as usize).copied();
+        Some(self.read(&spherical, hosts.map(point), step, channel))
     }
 
     /// Eq. 1 with k = c || k': the original and its hosts are given. The suspect is turned, scaled and moved to lie as the original
@@ -56,9 +82,9 @@ impl Chain<'_> {
         let surface = Surface::new(&aligned);
         let point = |&host: &u32| {
             let &from = original.positions.get(host as usize)?;
-            in_direction(&surface, &spherical, from)
+            in_direction(&aligned, &surface, &spherical, from)
         };
-        Some(self.read(&spherical, hosts.iter().map(point), step))
+        Some(self.read(&spherical, hosts.iter().map(point), step, IN_ORDER))
     }
 }
 
@@ -86,14 +112,30 @@ fn moved(mesh: &Mesh, from: &Pose, to: &Pose, turn: DVec3) -> Mesh {
     mesh.with_positions(mesh.positions.iter().map(place).collect())
 }
 
-/// The point of a surface in the direction of a point near it: alternately the nearest of the surface and the nearest of the ray.
-fn in_direction(surface: &Surface, spherical: &Spherical, from: DVec3) -> Option<DVec3> {
+/// The point of a surface in the direction of a point near it: alternately the nearest of the surface and the nearest of the ray,
+/// or a vertex met on the way that lies next to the ray. Hosts are peaks, where the surface next to them lies lower.
+fn in_direction(
+    mesh: &Mesh,
+    surface: &Surface,
+    spherical: &Spherical,
+    from: DVec3,
+) -> Option<DVec3> {
     let direction = (from - spherical.origin).try_normalize()?;
+    let off = |point: DVec3| (point - spherical.origin).reject_from(direction).length();
     let mut at = from;
+    let mut vertex = (OFF, None);
     for _ in 0..ROUNDS {
         let nearest = surface.nearest(at)?;
+        let corners = mesh.corners(mesh.triangles[nearest.triangle as usize]);
+        let [a, b, c] = corners;
+        let size = (b - a).cross(c - a).length().sqrt();
+        for corner in corners {
+            if off(corner) < vertex.0 * size {
+                vertex = (off(corner) / size, Some(corner));
+            }
+        }
         let along = (nearest.point - spherical.origin).dot(direction);
         at = spherical.origin + direction * along;
     }
-    Some(at)
+    Some(vertex.1.unwrap_or(at))
 }

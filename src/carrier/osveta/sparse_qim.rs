@@ -4,8 +4,8 @@
 use crate::key::{Key, Prf};
 use std::f64::consts::TAU;
 
-/// Standard deviation of what disturbs a projection, in steps.
-const DISTURBANCE: f64 = 0.125;
+/// Standard deviation of what disturbs a projection, in steps: about that of a smoothing that still can be read through.
+const DISTURBANCE: f64 = 0.2;
 
 /// Eq. 5: the point of the quantizer of a bit that is nearest to `x`. The nominal quantizer's points, the multiples of the
 /// step, are moved up by a quarter of it for a 1 and down for a 0.

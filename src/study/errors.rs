@@ -1,12 +1,11 @@
 //! The paper's Fig. 5: how often bits are wrong, for random and for chosen hosts, against the smoothing and against the strength,
 //! before the codes and after; and the same for each way of finding hosts again.
 
-use super::Spread;
-use crate::attack::catmull_clark;
+use super::{Smoothing, Spread};
 use crate::carrier::CarrierError;
 use crate::carrier::osveta::{Barycentre, CellReading, Cells, Chain, Ranking, Spherical, rank};
 use crate::code::{Block, TextCheck};
-use crate::geometry::{Surface, diagonal};
+use crate::geometry::diagonal;
 use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
@@ -22,9 +21,6 @@ pub const STRENGTH: f64 = 8e-4;
 
 /// The code of the study: 64 bits, so about a thousand hosts, as the paper has.
 const BLOCK: Block = Block::Tc128;
-
-/// A host that is farther from every vertex of the suspect than so many mean edges is lost.
-const LOST: f64 = 0.3;
 
 /// Which vertices hold the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,18 +66,9 @@ pub enum Finding {
     Cells,
 }
 
-/// What happens between embedder and detector.
-#[derive(Clone, Copy)]
-pub struct Attack<'a> {
-    /// A name for tables.
-    pub name: &'a str,
-    /// Where it adds vertices, it names them after those that were there.
-    pub apply: &'a dyn Fn(&Mesh) -> Mesh,
-}
-
 /// What is asked.
-#[derive(Clone, Copy)]
-pub struct Case<'a> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
     /// Which vertices hold the message.
     pub hosts: Hosts,
     /// What distances are measured from; cells have a frame of their own.
@@ -89,25 +76,29 @@ pub struct Case<'a> {
     /// RMS displacement over all vertices, as a fraction of the diagonal.
     pub strength: f64,
     /// What happens to the marked mesh.
-    pub attack: Attack<'a>,
+    pub smoothing: Smoothing,
+    /// How often.
+    pub iterations: u32,
 }
 
 /// The errors of one case and one way of finding, over all keys.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Errors {
-    /// The attack's name.
-    pub attack: String,
-    /// RMS displacement over all vertices, as a fraction of the diagonal.
-    pub strength: f64,
     /// Which vertices held the message: [`Hosts::name`].
     pub hosts: &'static str,
     /// How they were found again.
     pub finding: Finding,
+    /// What distances were measured from.
+    pub barycentre: Barycentre,
+    /// RMS displacement over all vertices, as a fraction of the diagonal.
+    pub strength: f64,
+    /// What happened to the marked mesh.
+    pub smoothing: Smoothing,
+    /// How often.
+    pub iterations: u32,
     /// Share of the symbols with the wrong sign, before any code; 0.5 is chance. Of cells: of the code's bits.
     pub raw: Spread,
-    /// Share of the symbols that were lost.
-    pub lost: Spread,
     /// Share of the message's 64 bits that are wrong after decoding; 0.5 is chance.
     pub payload: Spread,
     /// Share of the keys whose text was read without an error, and known to be right by its check bits.
@@ -124,62 +115,92 @@ pub struct Figure5 {
     pub against_strength: Vec<Errors>,
 }
 
-/// Fig. 5 for a mesh, over keys, messages and random draws, each with a number for its seed.
+/// Fig. 5 for a mesh, over keys, messages and random draws, each with a number for its seed. The paper's barycentre is that of the
+/// vertices.
 pub fn figure_5(
     mesh: &Mesh,
+    barycentre: Barycentre,
     keys: Range<u64>,
     progress: &mut dyn Progress,
 ) -> Result<Figure5, CarrierError> {
-    let smoothings = (0..=2).map(|rounds| (0, rounds, STRENGTH));
-    let strengths = STRENGTHS.map(|strength| (1, 1, strength));
-    let cases: Vec<(usize, u32, f64)> = smoothings.chain(strengths).collect();
-    let mut halves = [Vec::new(), Vec::new()];
-    for (number, &(half, rounds, strength)) in cases.iter().enumerate() {
-        let done = number as f64 / cases.len() as f64;
-        for hosts in Hosts::every() {
-            let case = Case {
-                hosts,
-                barycentre: Barycentre::Vertices,
-                strength,
-                attack: Attack {
-                    name: &format!("MeshSmooth {rounds}"),
-                    apply: &|mesh| catmull_clark(mesh, rounds),
-                },
-            };
-            let mut within = |stage, _| progress.report(stage, done);
-            halves[half].extend(errors(mesh, &case, keys.clone(), &mut within)?);
-        }
-    }
-    step(progress, Stage::Test, 1.0)?;
-    let [against_smoothing, against_strength] = halves;
+    let case = |hosts, iterations, strength| Case {
+        hosts,
+        barycentre,
+        strength,
+        smoothing: Smoothing::MeshSmooth,
+        iterations,
+    };
+    let against_smoothing =
+        (0..=2).flat_map(|rounds| Hosts::every().map(move |hosts| case(hosts, rounds, STRENGTH)));
+    let against_strength = STRENGTHS
+        .into_iter()
+        .flat_map(|strength| Hosts::every().map(move |hosts| case(hosts, 1, strength)));
     Ok(Figure5 {
-        against_smoothing,
-        against_strength,
+        against_smoothing: each(mesh, against_smoothing.collect(), keys.clone(), progress)?,
+        against_strength: each(mesh, against_strength.collect(), keys, progress)?,
     })
 }
 
-/// Embeds a message for each key, attacks, and reads it in every way that these hosts can be found.
+/// The same for every smoothing, once and twice, at [`STRENGTH`].
+pub fn smoothings(
+    mesh: &Mesh,
+    barycentre: Barycentre,
+    keys: Range<u64>,
+    progress: &mut dyn Progress,
+) -> Result<Vec<Errors>, CarrierError> {
+    let mut cases = Vec::new();
+    for smoothing in Smoothing::ALL {
+        for iterations in 1..=2 {
+            cases.extend(Hosts::every().map(|hosts| Case {
+                hosts,
+                barycentre,
+                strength: STRENGTH,
+                smoothing,
+                iterations,
+            }));
+        }
+    }
+    each(mesh, cases, keys, progress)
+}
+
+fn each(
+    mesh: &Mesh,
+    cases: Vec<Case>,
+    keys: Range<u64>,
+    progress: &mut dyn Progress,
+) -> Result<Vec<Errors>, CarrierError> {
+    let mut all = Vec::new();
+    for (number, case) in cases.iter().enumerate() {
+        let done = number as f64 / cases.len() as f64;
+        let mut within = |stage, _| progress.report(stage, done);
+        all.extend(errors(mesh, case, keys.clone(), &mut within)?);
+    }
+    Ok(all)
+}
+
+/// Embeds a message for each key, smooths, and reads it in every way that these hosts can be found.
 pub fn errors(
     mesh: &Mesh,
     case: &Case,
     keys: Range<u64>,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Errors>, CarrierError> {
+    let ranked = match case.hosts {
+        Hosts::Ranked(ranking) => rank(mesh, ranking).order,
+        _ => Vec::new(),
+    };
+    let num_keys = keys.end.saturating_sub(keys.start) as f64;
     let mut outcomes = Vec::new();
-    for number in keys.clone() {
-        let done = (number - keys.start) as f64 / (keys.end - keys.start) as f64;
-        step(progress, Stage::Test, done)?;
-        let trial = Trial::new(number);
+    for (number, key) in keys.enumerate() {
+        step(progress, Stage::Test, number as f64 / num_keys)?;
+        let trial = Trial::new(key);
         outcomes.extend(match case.hosts {
             Hosts::All => vec![trial.in_cells(mesh, case)?],
             Hosts::Random => {
-                let order = Random::new(number).permutation(mesh.positions.len());
+                let order = Random::new(key).permutation(mesh.positions.len());
                 trial.in_hosts(mesh, &order, None, case)?
             }
-            Hosts::Ranked(ranking) => {
-                let order = rank(mesh, ranking).order;
-                trial.in_hosts(mesh, &order, Some(ranking), case)?
-            }
+            Hosts::Ranked(ranking) => trial.in_hosts(mesh, &ranked, Some(ranking), case)?,
         });
     }
     let mut findings: Vec<Finding> = outcomes.iter().map(|outcome| outcome.finding).collect();
@@ -191,22 +212,25 @@ pub fn errors(
     Ok(summed.collect())
 }
 
-impl Case<'_> {
+impl Case {
     /// What all trials say of one way of finding.
     fn sum(&self, finding: Finding, outcomes: &[Outcome]) -> Errors {
-        let of = |value: fn(&Outcome) -> f64| -> Vec<f64> {
-            let here = outcomes.iter().filter(|outcome| outcome.finding == finding);
-            here.map(value).collect()
+        let of = |value: fn(&Outcome) -> f64| {
+            let here = outcomes
+                .iter()
+                .filter(move |outcome| outcome.finding == finding);
+            Spread::of(here.map(value))
         };
         Errors {
-            attack: self.attack.name.to_owned(),
-            strength: self.strength,
             hosts: self.hosts.name(),
             finding,
-            raw: Spread::of(&of(|outcome| outcome.raw)),
-            lost: Spread::of(&of(|outcome| outcome.lost)),
-            payload: Spread::of(&of(|outcome| outcome.payload)),
-            read: Spread::of(&of(|outcome| f64::from(u8::from(outcome.is_read)))).mean,
+            barycentre: self.barycentre,
+            strength: self.strength,
+            smoothing: self.smoothing,
+            iterations: self.iterations,
+            raw: of(|outcome| outcome.raw),
+            payload: of(|outcome| outcome.payload),
+            read: of(|outcome| f64::from(u8::from(outcome.is_read))).mean,
         }
     }
 }
@@ -222,7 +246,6 @@ struct Trial {
 struct Outcome {
     finding: Finding,
     raw: f64,
-    lost: f64,
     payload: f64,
     is_read: bool,
 }
@@ -257,8 +280,9 @@ impl Trial {
         };
         let embedded = chain.embed(mesh, order, &self.message, case.strength)?;
         let hosts = &order[..Chain::num_hosts(BLOCK)];
-        let suspect = (case.attack.apply)(&embedded.mesh);
-        let traced = traced(&embedded.mesh, &suspect, hosts);
+        let suspect = case.smoothing.apply(&embedded.mesh, case.iterations);
+        // No smoothing gives a vertex another index.
+        let traced: Vec<Option<u32>> = hosts.iter().map(|&host| Some(host)).collect();
         let step = embedded.step;
         let ways = [
             (Finding::Traced, chain.read_traced(&suspect, &traced, step)),
@@ -273,8 +297,8 @@ impl Trial {
         ];
         let read = ways.into_iter().filter_map(|(finding, read)| {
             let received = read?;
-            let (raw, lost) = received.symbol_errors(&embedded.symbols);
-            Some(self.outcome(finding, raw, lost, &received.decoded.message))
+            let (raw, _) = received.symbol_errors(&embedded.symbols);
+            Some(self.outcome(finding, raw, &received.decoded.message))
         });
         Ok(read.collect())
     }
@@ -286,7 +310,8 @@ impl Trial {
         let cells = Cells::new(&self.key, BLOCK, step);
         let displacement = cells.embed(mesh, &self.message)?;
         let moved = mesh.positions.iter().zip(displacement).map(|(p, d)| *p + d);
-        let suspect = (case.attack.apply)(&mesh.with_positions(moved.collect()));
+        let marked = mesh.with_positions(moved.collect());
+        let suspect = case.smoothing.apply(&marked, case.iterations);
         let readings = cells.read(&suspect);
         let is_right = |message: &[u8]| self.check.text(message).is_some();
         let right = readings
@@ -308,10 +333,10 @@ impl Trial {
         let (raw, message) = outcome.map_or((0.5, Vec::new()), |(reading, message)| {
             (wrong(reading), message)
         });
-        Ok(self.outcome(Finding::Cells, raw, 0.0, &message))
+        Ok(self.outcome(Finding::Cells, raw, &message))
     }
 
-    fn outcome(&self, finding: Finding, raw: f64, lost: f64, message: &[u8]) -> Outcome {
+    fn outcome(&self, finding: Finding, raw: f64, message: &[u8]) -> Outcome {
         let pairs = self.message.iter().zip(message);
         let wrong: u32 = pairs.map(|(sent, read)| (sent ^ read).count_ones()).sum();
         // Of bits that were not read at all, half would be right by chance.
@@ -320,34 +345,8 @@ impl Trial {
         Outcome {
             finding,
             raw,
-            lost,
             payload: (f64::from(wrong) + 0.5 * missing as f64) / bits as f64,
             is_read: message == self.message && self.check.text(message).is_some(),
         }
     }
-}
-
-/// Where hosts are in a suspect: the vertices of the same names, or, where there are fewer vertices than before, those that lie
-/// where the hosts did.
-fn traced(marked: &Mesh, suspect: &Mesh, hosts: &[u32]) -> Vec<Option<u32>> {
-    if suspect.positions.len() >= marked.positions.len() {
-        return hosts.iter().map(|&host| Some(host)).collect();
-    }
-    let surface = Surface::new(suspect);
-    let edges = marked.triangles.iter().map(|&triangle| {
-        let [a, b, _] = marked.corners(triangle);
-        a.distance(b)
-    });
-    let near = LOST * edges.sum::<f64>() / marked.triangles.len().max(1) as f64;
-    let find = |&host: &u32| {
-        let position = marked.positions[host as usize];
-        let nearest = surface.nearest(position)?;
-        let corners = suspect.triangles[nearest.triangle as usize];
-        let distance = |vertex: &u32| suspect.positions[*vertex as usize].distance(position);
-        let vertex = corners
-            .into_iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        (distance(&vertex) < near).then_some(vertex)
-    };
-    hosts.iter().map(find).collect()
 }

@@ -6,7 +6,7 @@ use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
 /// Which barycentre, and which scale.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Barycentre {
     /// Mean of the vertices, and the mean of their distances from it: Vasic and Vasic 2012. Moves when vertices come or go.

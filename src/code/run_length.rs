@@ -1,5 +1,5 @@
-//! Bits as runs of alternating symbols, which show where a symbol was lost or came in between: section III.B of the paper
-//! (docs/REFERENCES.md, "Hosts"), and its exact decoder.
+//! Bits as runs of alternating symbols, which show where a symbol was lost or came in between: section III.B of Vasic 2012
+//! (docs/REFERENCES.md), and its exact decoder.
 //!
 //! A 0 is a run of two, a 1 a run of three; the first run is of ones, the second of zeros, and so on.
 

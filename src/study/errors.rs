@@ -216,10 +216,8 @@ impl Case {
     /// What all trials say of one way of finding.
     fn sum(&self, finding: Finding, outcomes: &[Outcome]) -> Errors {
         let of = |value: fn(&Outcome) -> f64| {
-            let here = outcomes
-                .iter()
-                .filter(move |outcome| outcome.finding == finding);
-            Spread::of(here.map(value))
+            let here = outcomes.iter().filter(|outcome| outcome.finding == finding);
+            Spread::of(&here.map(value).collect::<Vec<f64>>())
         };
         Errors {
             hosts: self.hosts.name(),

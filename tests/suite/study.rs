@@ -58,7 +58,7 @@ fn study_rankings_beat_chance() {
             (index.random.mean - chance).abs() < 4.0 * spread,
             "{index:?}"
         );
-        assert!((index.random.least..=index.random.greatest).contains(&chance.floor()));
+        assert!((index.random.least..=index.random.most).contains(&chance.floor()));
         let ratios: Vec<f64> = index
             .ranked
             .iter()

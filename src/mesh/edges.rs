@@ -3,16 +3,33 @@
 use super::Mesh;
 
 /// One side of a triangle.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Side {
     low: u32,
     high: u32,
-    face: u32,
-    /// The triangle runs from `low` to `high`.
-    ascending: bool,
+    /// The triangle's number, doubled, and 1 more where it runs from `low` to `high`.
+    direction: u32,
 }
 
-/// All sides of all triangles, those of one edge side by side. Construction O(V + F), 16 bytes a side.
+impl Side {
+    fn new(from: u32, to: u32, face: u32) -> Side {
+        Side {
+            low: from.min(to),
+            high: from.max(to),
+            direction: face << 1 | u32::from(from < to),
+        }
+    }
+
+    fn face(&self) -> u32 {
+        self.direction >> 1
+    }
+
+    fn is_ascending(&self) -> bool {
+        self.direction & 1 == 1
+    }
+}
+
+/// All sides of all triangles, those of one edge side by side. Construction O(V + F), 12 bytes a side, and as many for a while.
 pub struct Edges {
     sides: Vec<Side>,
     num_faces: usize,
@@ -21,20 +38,17 @@ pub struct Edges {
 impl Edges {
     /// Collects the edges of a mesh.
     pub fn new(mesh: &Mesh) -> Edges {
-        let faces = mesh.triangles.iter().zip(0..);
-        let sides = faces.flat_map(|(&[a, b, c], face)| {
-            [(a, b), (b, c), (c, a)].map(|(from, to)| Side {
-                low: from.min(to),
-                high: from.max(to),
-                face,
-                ascending: from < to,
+        let sides = || {
+            let faces = mesh.triangles.iter().zip(0..);
+            faces.flat_map(|(&[a, b, c], face)| {
+                [(a, b), (b, c), (c, a)].map(|(from, to)| Side::new(from, to, face))
             })
-        });
+        };
         // By the higher vertex, then by the lower: within an edge the faces are still in order.
         let num_vertices = mesh.positions.len();
-        let by_high = by_vertex(&sides.collect::<Vec<_>>(), num_vertices, |side| side.high);
+        let by_high = by_vertex(sides, num_vertices, |side| side.high);
         Edges {
-            sides: by_vertex(&by_high, num_vertices, |side| side.low),
+            sides: by_vertex(|| by_high.iter().copied(), num_vertices, |side| side.low),
             num_faces: mesh.triangles.len(),
         }
     }
@@ -61,8 +75,8 @@ impl Edges {
         for sides in self.edges() {
             for pair in sides.windows(2) {
                 let (a, b) = (
-                    find(&mut parents, pair[0].face),
-                    find(&mut parents, pair[1].face),
+                    find(&mut parents, pair[0].face()),
+                    find(&mut parents, pair[1].face()),
                 );
                 if a != b {
                     parents[b as usize] = a;
@@ -87,9 +101,9 @@ impl Edges {
         };
         for sides in self.edges() {
             if let [a, b] = sides {
-                let differ = a.ascending == b.ascending;
-                join(a.face, b.face, differ);
-                join(b.face, a.face, differ);
+                let differ = a.is_ascending() == b.is_ascending();
+                join(a.face(), b.face(), differ);
+                join(b.face(), a.face(), differ);
             }
         }
         let mut flips: Vec<Option<bool>> = vec![None; self.num_faces];
@@ -139,7 +153,7 @@ impl Edges {
             .filter(|sides| sides.len() == 1)
             .map(|sides| sides[0]);
         alone.map(|side| {
-            if side.ascending {
+            if side.is_ascending() {
                 (side.low, side.high)
             } else {
                 (side.high, side.low)
@@ -161,7 +175,7 @@ impl Edges {
 
     /// The one-rings.
     pub fn rings(&self, num_vertices: usize) -> Rings {
-        let mut valences = vec![0; num_vertices];
+        let mut valences = vec![0u32; num_vertices];
         let mut closed = vec![true; num_vertices];
         for sides in self.edges() {
             for vertex in [sides[0].low as usize, sides[0].high as usize] {
@@ -175,13 +189,13 @@ impl Edges {
             *total += valence;
             Some(*total)
         }));
-        let mut neighbours = vec![0; starts[num_vertices]];
+        let mut neighbours = vec![0; starts[num_vertices] as usize];
         let mut next = starts.clone();
         for sides in self.edges() {
             let (low, high) = (sides[0].low, sides[0].high);
             for (vertex, neighbour) in [(low, high), (high, low)] {
                 let slot = &mut next[vertex as usize];
-                neighbours[*slot] = neighbour;
+                neighbours[*slot as usize] = neighbour;
                 *slot += 1;
             }
         }
@@ -200,19 +214,23 @@ impl Edges {
 }
 
 /// Sides in increasing order of one of their vertices, those of one vertex in the order given: a counting sort.
-fn by_vertex(sides: &[Side], num_vertices: usize, vertex: impl Fn(&Side) -> u32) -> Vec<Side> {
-    let mut starts = vec![0; num_vertices];
-    for side in sides {
-        starts[vertex(side) as usize] += 1;
+fn by_vertex<I: Iterator<Item = Side>>(
+    sides: impl Fn() -> I,
+    num_vertices: usize,
+    vertex: impl Fn(&Side) -> u32,
+) -> Vec<Side> {
+    let mut starts = vec![0u32; num_vertices];
+    for side in sides() {
+        starts[vertex(&side) as usize] += 1;
     }
     let mut total = 0;
     for start in &mut starts {
         (*start, total) = (total, total + *start);
     }
-    let mut sorted = sides.to_vec();
-    for side in sides {
-        let slot = &mut starts[vertex(side) as usize];
-        sorted[*slot] = *side;
+    let mut sorted = vec![Side::default(); total as usize];
+    for side in sides() {
+        let slot = &mut starts[vertex(&side) as usize];
+        sorted[*slot as usize] = side;
         *slot += 1;
     }
     sorted
@@ -250,7 +268,7 @@ pub struct Winding {
 
 /// The one-ring of every vertex: its neighbours, each once.
 pub struct Rings {
-    starts: Vec<usize>,
+    starts: Vec<u32>,
     neighbours: Vec<u32>,
     closed: Vec<bool>,
 }
@@ -258,12 +276,12 @@ pub struct Rings {
 impl Rings {
     /// The neighbours of a vertex, in an order that depends on vertex numbers only.
     pub fn neighbours(&self, vertex: usize) -> &[u32] {
-        &self.neighbours[self.starts[vertex]..self.starts[vertex + 1]]
+        &self.neighbours[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
     /// Neighbours of a vertex.
     pub fn valence(&self, vertex: usize) -> usize {
-        self.starts[vertex + 1] - self.starts[vertex]
+        (self.starts[vertex + 1] - self.starts[vertex]) as usize
     }
 
     /// Whether the vertex has three faces or more and every edge at it has exactly two of them.

@@ -6,9 +6,10 @@ use crate::bits::Payload;
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
-use crate::document::{Document, Files};
+use crate::document::{Document, Files, Written};
 use crate::geometry::{Distortion, diagonal};
 use crate::key::Key;
+use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 use crate::scene::Scene;
 use glam::DVec3;
@@ -41,6 +42,61 @@ pub fn embed(
     if options.carriers.is_empty() {
         return Err(Error::NoCarrier);
     }
+    let Marked {
+        host,
+        marked,
+        written,
+    } = mark(model, files, payload, key, options, progress)?;
+    let distortion = Distortion::between(&host.positions, &marked.positions);
+    let mut marked_files = files.clone();
+    marked_files.extend(written.files.clone());
+    let read_back = detect(&written.model, &marked_files, key, None, progress)?;
+    if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
+        let addresses = read_back
+            .carriers
+            .iter()
+            .map(|carrier| carrier.addresses)
+            .sum();
+        return Err(Error::Unreadable { addresses });
+    }
+    let forecast = forecast(&host, &marked, key, payload, progress)?;
+    let report = EmbedReport {
+        tag: payload.tag(),
+        number: payload.number(),
+        vertices: host.positions.len(),
+        moved_vertices: distortion.num_moved,
+        diagonal: diagonal(&host.positions),
+        rms_rel: distortion.rms_rel,
+        max_rel: distortion.max_rel,
+        strength: options.strength.rms_rel(),
+        read_back,
+        forecast,
+        host_sha256: sha256(model),
+        marked_sha256: sha256(&written.model),
+    };
+    Ok(Embedding {
+        model: written.model,
+        files: written.files,
+        report,
+    })
+}
+
+/// What is left of an embedding once it is written.
+struct Marked {
+    host: Mesh,
+    marked: Mesh,
+    written: Written,
+}
+
+/// Reads, displaces and writes.
+fn mark(
+    model: &[u8],
+    files: &Files,
+    payload: Payload,
+    key: &Key,
+    options: &EmbedOptions,
+    progress: &mut dyn Progress,
+) -> Result<Marked, Error> {
     step(progress, Stage::Read, 0.0)?;
     let mut document = Document::read(model, files)?;
     let scene = Scene::gather(&document)?;
@@ -95,40 +151,17 @@ pub fn embed(
         .map(|(marked, host)| (*marked - *host) * scale)
         .collect();
     scene.scatter(&mut document, &displacement)?;
-    let marked = scene.mesh.with_positions(scene.positions_in(&document)?);
-    let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);
+    // What is done with makes room: models of a million vertices are marked in a browser tab too.
+    drop((mesh, displacement));
+    let positions = scene.positions_in(&document)?;
+    let host = scene.mesh;
     let written = document.write()?;
+    drop(document);
+    let marked = host.with_positions(positions);
     step(progress, Stage::Write, 1.0)?;
-
-    let mut marked_files = files.clone();
-    marked_files.extend(written.files.clone());
-    let read_back = detect(&written.model, &marked_files, key, None, progress)?;
-    if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
-        let addresses = read_back
-            .carriers
-            .iter()
-            .map(|carrier| carrier.addresses)
-            .sum();
-        return Err(Error::Unreadable { addresses });
-    }
-    let forecast = forecast(&scene.mesh, &marked, key, payload, progress)?;
-    let report = EmbedReport {
-        tag: payload.tag(),
-        number: payload.number(),
-        vertices: scene.mesh.positions.len(),
-        moved_vertices: distortion.num_moved,
-        diagonal: diagonal(&scene.mesh.positions),
-        rms_rel: distortion.rms_rel,
-        max_rel: distortion.max_rel,
-        strength: options.strength.rms_rel(),
-        read_back,
-        forecast,
-        host_sha256: sha256(model),
-        marked_sha256: sha256(&written.model),
-    };
-    Ok(Embedding {
-        model: written.model,
-        files: written.files,
-        report,
+    Ok(Marked {
+        host,
+        marked,
+        written,
     })
 }

@@ -33,6 +33,19 @@ pub fn embed(
     mark: &Mark,
     progress: &mut dyn Progress,
 ) -> Result<Vec<DVec3>, CarrierError> {
+    let displacement = displacement(host, mark, progress)?;
+    if host.on_top {
+        speaks_up(host, mark, &displacement)?;
+    }
+    step(progress, Stage::Embed, 1.0)?;
+    Ok(displacement)
+}
+
+fn displacement(
+    host: &Host,
+    mark: &Mark,
+    progress: &mut dyn Progress,
+) -> Result<Vec<DVec3>, CarrierError> {
     let positions = &host.mesh.positions;
     let neighbourhoods = Neighbourhoods::new(host.mesh);
     let features = Features::new(positions, &neighbourhoods);
@@ -96,10 +109,6 @@ pub fn embed(
         host.admissible.project(&mut displacement);
         scale_to_rms(&mut displacement, limit);
     }
-    if host.on_top {
-        speaks_up(host, mark, &displacement)?;
-    }
-    step(progress, Stage::Embed, 1.0)?;
     Ok(displacement)
 }
 

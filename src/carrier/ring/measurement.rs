@@ -72,21 +72,7 @@ pub fn num_addresses(mesh: &Mesh) -> usize {
 impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {
-        let neighbourhoods = Neighbourhoods::new(mesh);
-        let features = Features::new(&mesh.positions, &neighbourhoods);
-        let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
-        let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
-        let cells = match Pose::of(mesh) {
-            Some(pose) => address::cells(&mesh.positions, &pose),
-            None => vec![[0; 3]; mesh.positions.len()],
-        };
-        let samples = features.usable.iter().map(|&v| v as usize).map(|v| Sample {
-            by_connectivity: by_connectivity[v],
-            by_geometry: by_geometry[v],
-            cell: cells[v],
-            offset: features.offsets[v] as f32,
-        });
-        Measurement::from_samples(samples.collect())
+        Measurement::from_samples(samples(mesh))
     }
 
     fn from_samples(samples: Vec<Sample>) -> Measurement {
@@ -153,6 +139,26 @@ impl Measurement {
             .then(|| samples.map(Measurement::from_samples))
             .flatten()
     }
+}
+
+/// All rings of a mesh.
+fn samples(mesh: &Mesh) -> Vec<Sample> {
+    let neighbourhoods = Neighbourhoods::new(mesh);
+    let features = Features::new(&mesh.positions, &neighbourhoods);
+    let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
+    let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
+    let cells = match Pose::of(mesh) {
+        Some(pose) => address::cells(&mesh.positions, &pose),
+        None => vec![[0; 3]; mesh.positions.len()],
+    };
+    let sample = |v: usize| Sample {
+        by_connectivity: by_connectivity[v],
+        by_geometry: by_geometry[v],
+        cell: cells[v],
+        offset: features.offsets[v] as f32,
+    };
+    let usable = features.usable.iter();
+    usable.map(|&v| sample(v as usize)).collect()
 }
 
 /// `exp(2 pi i f / STEP)` of a ring's feature.

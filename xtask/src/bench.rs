@@ -24,17 +24,11 @@ pub fn bench(steps: &mut Steps, runs: u32) -> Result<()> {
         )
     })?;
     steps.run("npm packages", npm::set_up)?;
-    steps.run("wasm module", || builder.package())?;
+    steps.run("wasm modules", || builder.package())?;
     steps.run("page", page::build)?;
     let browser = steps.run("Chromium", browser::set_up)?;
     steps.run("stages", time_stages)?;
     steps.run("measurements", || {
-        let Manifest {
-            name,
-            out_dir,
-            gzip_budget_bytes,
-            ..
-        } = Manifest::read()?;
         let native_rustc = rustc_version(&Command::new("cargo"))?;
         let wasm_rustc = rustc_version(&builder.cargo("build"))?;
         let mut node = Command::new("node");
@@ -42,13 +36,15 @@ pub fn bench(steps: &mut Steps, runs: u32) -> Result<()> {
             .env("MESHMARK_CHROMIUM", browser.chromium)
             .arg("www/bench/bench.mjs")
             .args(["--runs", &runs.to_string()])
-            .args(["--cli", &format!("target/release/{name}")])
-            .args(["--module", &format!("{out_dir}/{name}_bg.wasm")])
-            .args(["--gzip-budget", &gzip_budget_bytes.to_string()])
+            .args(["--cli", "target/release/meshmark"])
             .args(["--stages", STAGES])
             .args(["--native-rustc", &native_rustc])
             .args(["--wasm-rustc", &wasm_rustc])
             .args(["--output", "docs/PERFORMANCE.md"]);
+        for module in Manifest::read()?.modules {
+            node.arg("--module").arg(module.path());
+            node.args(["--gzip-budget", &module.gzip_budget_bytes.to_string()]);
+        }
         run(&mut node, "see the error above")
     })
 }

@@ -24,7 +24,7 @@ use process::Failure;
 use steps::Steps;
 
 const USAGE: &str = "\
-cargo xtask build                 the wasm module, for the npm package
+cargo xtask build                 the wasm modules, for the npm package and the page
 cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the next free one
 cargo xtask test                  every check there is
 cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs

@@ -1,4 +1,4 @@
-//! wasm-pack.toml: `key = "text"` or `key = number` lines and comments, the part of TOML that it needs.
+//! wasm-pack.toml: `key = "text"` or `key = number` lines, `[[module]]` and comments, the part of TOML that it needs.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,14 +9,29 @@ use crate::project;
 
 const FILE: &str = "wasm-pack.toml";
 
-/// How the wasm module is packaged; what each key means is said in the file.
+/// How wasm modules are packaged; what each key means is said in the file.
 pub struct Manifest {
-    pub name: String,
     pub target: String,
-    pub out_dir: String,
     pub rust_flags: Vec<String>,
     pub wasm_opt_flags: Vec<String>,
+    pub modules: Vec<Module>,
+}
+
+/// One of the modules.
+pub struct Module {
+    pub name: String,
+    pub feature: String,
+    pub out_dir: String,
     pub gzip_budget_bytes: u64,
+}
+
+impl Module {
+    /// The module itself, of the files in its folder.
+    pub fn path(&self) -> PathBuf {
+        project::root()
+            .join(&self.out_dir)
+            .join(format!("{}_bg.wasm", self.name))
+    }
 }
 
 impl Manifest {
@@ -32,24 +47,50 @@ impl Manifest {
     }
 
     fn parse(text: &str) -> std::result::Result<Self, String> {
-        let mut values = parse_lines(text)?;
-        let mut take = |key: &str| {
-            values
-                .remove(key)
-                .ok_or_else(|| format!("`{key}` is missing"))
-        };
+        let (mut shared, modules) = parse_tables(text)?;
         let words = |text: String| text.split_whitespace().map(str::to_owned).collect();
         let manifest = Self {
-            name: take("name")?.text()?,
-            target: take("target")?.text()?,
-            out_dir: take("out-dir")?.text()?,
-            rust_flags: words(take("rust-flags")?.text()?),
-            wasm_opt_flags: words(take("wasm-opt-flags")?.text()?),
-            gzip_budget_bytes: take("gzip-budget-bytes")?.number()?,
+            target: shared.take("target")?.text()?,
+            rust_flags: words(shared.take("rust-flags")?.text()?),
+            wasm_opt_flags: words(shared.take("wasm-opt-flags")?.text()?),
+            modules: modules
+                .into_iter()
+                .map(Module::parse)
+                .collect::<std::result::Result<_, _>>()?,
         };
-        match values.keys().next() {
+        shared.end()?;
+        Ok(manifest)
+    }
+}
+
+impl Module {
+    fn parse(mut table: Table) -> std::result::Result<Self, String> {
+        let module = Self {
+            name: table.take("name")?.text()?,
+            feature: table.take("feature")?.text()?,
+            out_dir: table.take("out-dir")?.text()?,
+            gzip_budget_bytes: table.take("gzip-budget-bytes")?.number()?,
+        };
+        table.end()?;
+        Ok(module)
+    }
+}
+
+#[derive(Default)]
+struct Table<'a>(BTreeMap<&'a str, Value>);
+
+impl Table<'_> {
+    fn take(&mut self, key: &str) -> std::result::Result<Value, String> {
+        self.0
+            .remove(key)
+            .ok_or_else(|| format!("`{key}` is missing"))
+    }
+
+    /// Everything has been taken.
+    fn end(self) -> std::result::Result<(), String> {
+        match self.0.keys().next() {
             Some(key) => Err(format!("`{key}` is not a key of it")),
-            None => Ok(manifest),
+            None => Ok(()),
         }
     }
 }
@@ -75,11 +116,16 @@ impl Value {
     }
 }
 
-fn parse_lines(text: &str) -> std::result::Result<BTreeMap<&str, Value>, String> {
-    let mut values = BTreeMap::new();
+/// What stands before the first `[[module]]`, and what stands under each.
+fn parse_tables(text: &str) -> std::result::Result<(Table<'_>, Vec<Table<'_>>), String> {
+    let (mut shared, mut modules) = (Table::default(), Vec::new());
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        if line == "[[module]]" {
+            modules.push(Table::default());
             continue;
         }
         let (key, value) = line
@@ -87,11 +133,12 @@ fn parse_lines(text: &str) -> std::result::Result<BTreeMap<&str, Value>, String>
             .ok_or_else(|| format!("line {number} is not `key = value`"))?;
         let value = parse_value(value.trim())
             .ok_or_else(|| format!("line {number} has no value that is read here"))?;
-        if values.insert(key.trim(), value).is_some() {
+        let table = modules.last_mut().unwrap_or(&mut shared);
+        if table.0.insert(key.trim(), value).is_some() {
             return Err(format!("line {number} gives `{}` again", key.trim()));
         }
     }
-    Ok(values)
+    Ok((shared, modules))
 }
 
 /// A text in quotes without escapes, or a whole number, and then nothing but a comment.
@@ -119,38 +166,51 @@ mod tests {
 
     const GOOD: &str = r##"
         # a comment
-        name = "a"
         target = "web" # another
-        out-dir = "out#1"
         rust-flags = "-Cx  -Cy"
         wasm-opt-flags = ""
+        [[module]]
+        name = "a"
+        feature = "x"
+        out-dir = "out#1"
         gzip-budget-bytes = 12
+        [[module]]
+        name = "b"
+        feature = "y"
+        out-dir = "out"
+        gzip-budget-bytes = 3
     "##;
 
     #[test]
     fn reads_every_key() {
         let manifest = Manifest::parse(GOOD).expect("it is well formed");
-        assert_eq!(manifest.out_dir, "out#1");
         assert_eq!(manifest.rust_flags, ["-Cx", "-Cy"]);
         assert!(manifest.wasm_opt_flags.is_empty());
-        assert_eq!(manifest.gzip_budget_bytes, 12);
+        let modules: Vec<_> = manifest
+            .modules
+            .iter()
+            .map(|module| (&module.out_dir[..], module.gzip_budget_bytes))
+            .collect();
+        assert_eq!(modules, [("out#1", 12), ("out", 3)]);
     }
 
     #[test]
     fn says_what_is_wrong() {
         for (from, to, expected) in [
             ("name = \"a\"", "", "`name` is missing"),
-            ("name = \"a\"", "name", "line 3 is not `key = value`"),
+            ("target = \"web\"", "", "`target` is missing"),
+            ("target", "size = 1\ntarget", "`size` is not a key of it"),
+            ("name = \"a\"", "name", "line 7 is not `key = value`"),
             ("name = \"a\"", "name = 1", "1 should be in quotes"),
             (
                 "name = \"a\"",
                 "name = \"a\" b",
-                "line 3 has no value that is read here",
+                "line 7 has no value that is read here",
             ),
             (
                 "name = \"a\"",
                 "name = \"a\"\nname = \"b\"",
-                "line 4 gives `name` again",
+                "line 8 gives `name` again",
             ),
             (
                 "name = \"a\"",
@@ -161,7 +221,7 @@ mod tests {
             (
                 "12",
                 "99999999999999999999",
-                "line 8 has no value that is read here",
+                "line 10 has no value that is read here",
             ),
         ] {
             let error = Manifest::parse(&GOOD.replacen(from, to, 1)).err();

@@ -33,7 +33,7 @@ pub fn test(steps: &mut Steps) -> Result<()> {
     let builder = Builder::set_up(steps)?;
     steps.run("wasm lint", || {
         run(
-            &mut builder.cargo("clippy --lib --test suite -- -Dwarnings"),
+            &mut builder.cargo("clippy --lib --test suite --features study -- -Dwarnings"),
             LINT,
         )
     })?;
@@ -51,7 +51,7 @@ pub fn test(steps: &mut Steps) -> Result<()> {
     })?;
 
     steps.run("npm packages", npm::set_up)?;
-    steps.run("wasm module", || builder.package())?;
+    steps.run("wasm modules", || builder.package())?;
     steps.run("page", page::build)?;
     steps.run("package and page tests", || {
         run(

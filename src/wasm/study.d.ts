@@ -1,0 +1,171 @@
+/** Bytes of files that a `.gltf` names by URI, keyed by that URI (percent-decoded). */
+export type Files = Record<string, Uint8Array>;
+
+/** What stability is judged by: all that the paper names, the same integrated over cells, or the cost of the cheapest collapse. */
+export type Ranking = "literal" | "integrated" | "collapse";
+
+/** Of each, vertices keep their indices. `meshSmooth` is the paper's: Catmull and Clark's subdivision. */
+export type Smoothing =
+  | "meshSmooth"
+  | "loop"
+  | "sqrt3"
+  | "midpoint"
+  | "laplacian"
+  | "bilaplacian"
+  | "meanCurvatureFlow"
+  | "taubin"
+  | "meanFilter";
+
+/** How a model is brought to the paper's size: by a face threshold, as there, or by quadric error metrics. */
+export type Preparation = "optimize" | "simplify";
+
+/** Three coordinates a vertex, in scene units, and three vertices a triangle. */
+export interface StudyMesh {
+  positions: Float64Array;
+  triangles: Uint32Array;
+}
+
+/** The numbers that the study is made with. */
+export interface Parameters {
+  /** Faces that a model is brought to. */
+  numFaces: number;
+  /** Hosts of the paper. */
+  numHosts: number;
+  /** The strength at which smoothings are compared, and those of Fig. 5: RMS displacements as fractions of the diagonal. */
+  strength: number;
+  strengths: number[];
+}
+
+/** A model's mesh, with at most as many faces as the paper's. */
+export interface Prepared extends StudyMesh {
+  /** Bounding-box diagonal in scene units. */
+  diagonal: number;
+  /** What the model has itself, instances counted each, welded. */
+  modelVertices: number;
+  modelTriangles: number;
+}
+
+/** Numbers at every vertex. */
+export interface Fields {
+  /** Curvatures by quadrics: inverse squared, and inverse, scene units; the mean one is positive where the surface bulges. */
+  gaussian: Float64Array;
+  mean: Float64Array;
+  /** Place in the ranking: 1 for the most stable vertex, down to 0; 0 too for those that were rejected. */
+  stability: Float64Array;
+}
+
+/** Hosts before and after smoothing. The mesh is the smoothed one. */
+export interface Tracing extends StudyMesh {
+  /** How far each vertex that was there before has moved, as a fraction of the diagonal. */
+  deviation: Float64Array;
+  /** The hosts, the most stable first, and whether each is among as many best vertices of the smoothed mesh. */
+  hosts: Uint32Array;
+  found: boolean[];
+  /** Those best vertices, the most stable first. */
+  hostsAfter: Uint32Array;
+}
+
+/** Mean, standard deviation, least and greatest of several draws. */
+export interface Spread {
+  mean: number;
+  deviation: number;
+  least: number;
+  most: number;
+}
+
+/**
+ * What counts as found again, for a mesh of N vertices that has N' after smoothing.
+ * `index`: of the best N of all N', those that were there before.
+ * `region`: vertices that have one of those best N near where they were.
+ * `overlap`: of the best hosts before, those that are among as many best ones after.
+ */
+export type Rule = "index" | "region" | "overlap";
+
+export interface HostsOptions {
+  /** Draws of random hosts. Default 20. */
+  draws?: number;
+  /** What they are drawn with. Default 1. */
+  seed?: number;
+  /** Hosts of the overlap rule. Default 1000. */
+  numHosts?: number;
+  /** How near is near for the region rule, in mean edges. Default 0.2. */
+  tau?: number;
+}
+
+/** A row of Table I. */
+export interface HostsRow {
+  smoothing: Smoothing;
+  iterations: number;
+  numVerticesBefore: number;
+  numVertices: number;
+  rules: RuleCounts[];
+}
+
+export interface RuleCounts {
+  rule: Rule;
+  /** What random hosts come to by arithmetic; `null` for the region rule, which depends on the shape. */
+  chance: number | null;
+  random: Spread;
+  /** Of each ranking its count, and that over the mean of random ones; `null` where those are never found. */
+  ranked: { ranking: Ranking; count: number; ratio: number | null }[];
+}
+
+/** Which vertices hold the message: any, the best of a ranking, or all of them. */
+export type Hosts = "random" | Ranking | "all";
+
+/** How hosts are found again: indices known, ranked again, the original known, or by their direction. */
+export type Finding = "traced" | "ranked" | "original" | "cells";
+
+export interface ErrorsCase {
+  hosts: Hosts;
+  smoothing: Smoothing;
+  iterations: number;
+  /** RMS displacement over all vertices, as a fraction of the diagonal. */
+  strength: number;
+  /** How many keys are tried, each with a message of its own. */
+  keys: number;
+}
+
+/** The errors of a case and one way of finding, over all keys. */
+export interface Errors {
+  hosts: Hosts;
+  finding: Finding;
+  /** What distances were measured from. */
+  barycentre: "vertices";
+  strength: number;
+  smoothing: Smoothing;
+  iterations: number;
+  /** Share of wrong symbols before any code, and of wrong bits after decoding; 0.5 is chance. */
+  raw: Spread;
+  payload: Spread;
+  /** Share of the keys whose text was read. */
+  read: number;
+}
+
+/** What is thrown: a stable `code`, words for people, and for documents a JSON pointer. */
+export interface MeshmarkErrorObject {
+  code: string;
+  message: string;
+  path: string | null;
+}
+
+/** The numbers that the study is made with. */
+export function parameters(): Parameters;
+
+/** A model as the paper's. */
+export function prepare(model: Uint8Array, files: Files | undefined, preparation: Preparation): Prepared;
+
+/** Vertices, the most stable first; those that were rejected as errors of topology are not among them. */
+export function rank(mesh: StudyMesh, ranking: Ranking): Uint32Array;
+
+/** Curvature and stability. */
+export function fields(mesh: StudyMesh, ranking: Ranking): Fields;
+
+/** Smooths a mesh, 0 to 2 times, and looks for its hosts. */
+export function trace(mesh: StudyMesh, smoothing: Smoothing, iterations: number, ranking: Ranking, numHosts: number): Tracing;
+
+/** A row of Table I. */
+export function hosts(mesh: StudyMesh, smoothing: Smoothing, iterations: number, options?: HostsOptions): HostsRow;
+
+/** A point of Fig. 5, for each way of finding. `onProgress` hears how far the keys are, from 0 to 1. */
+export function errors(mesh: StudyMesh, asked: ErrorsCase, onProgress?: (stage: string, fraction: number) => void): Errors[];

@@ -1,0 +1,213 @@
+//! The study. Its functions take the mesh with every call: a worker that was ended has lost nothing.
+
+use super::{Listener, argument, encoded, files_from, set, thrown};
+use crate::carrier::osveta::{self, Barycentre, Ranking};
+use crate::document::Document;
+use crate::geometry::diagonal;
+use crate::mesh::Mesh;
+use crate::scene::Scene;
+use crate::study::errors::{self, Case, Hosts};
+use crate::study::{self, HostsOptions, Preparation, Smoothing};
+use crate::watermark::Error;
+use glam::DVec3;
+use js_sys::{Float64Array, Function, Object, Reflect, Uint32Array};
+use serde::{Deserialize, Serialize};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("study.d.ts");
+
+/// Smoothing more often would fill the memory: a subdivision gives four times the faces.
+const MAX_ITERATIONS: u32 = 2;
+
+/// The numbers that the study is made with.
+#[wasm_bindgen(skip_typescript)]
+pub fn parameters() -> Result<JsValue, JsValue> {
+    #[derive(Serialize)]
+    #[serde(rename_all = "camelCase")]
+    struct Parameters {
+        num_faces: usize,
+        num_hosts: u32,
+        strength: f64,
+        strengths: [f64; 5],
+    }
+    encoded(&Parameters {
+        num_faces: study::NUM_FACES,
+        num_hosts: HostsOptions::default().num_hosts,
+        strength: errors::STRENGTH,
+        strengths: errors::STRENGTHS,
+    })
+}
+
+/// A model as the paper's.
+#[wasm_bindgen(skip_typescript)]
+pub fn prepare(model: &[u8], files: JsValue, preparation: &str) -> Result<Object, JsValue> {
+    let preparation = Preparation::from_name(preparation)
+        .ok_or_else(|| argument(&format!("there is no preparation {preparation:?}")))?;
+    let scene = Document::read(model, &files_from(&files)?)
+        .map_err(Error::from)
+        .and_then(|document| Scene::gather(&document).map_err(Error::from))
+        .map_err(thrown)?;
+    let mesh = preparation.apply(&scene.mesh);
+    let result = Object::new();
+    let positions: Vec<f64> = mesh.positions.iter().flat_map(|p| p.to_array()).collect();
+    set(&result, "positions", &reals(&positions))?;
+    set(
+        &result,
+        "triangles",
+        &indices(mesh.triangles.as_flattened()),
+    )?;
+    set(&result, "diagonal", &diagonal(&mesh.positions).into())?;
+    let [vertices, triangles] = [scene.mesh.positions.len(), scene.mesh.triangles.len()];
+    set(&result, "modelVertices", &(vertices as f64).into())?;
+    set(&result, "modelTriangles", &(triangles as f64).into())?;
+    Ok(result)
+}
+
+/// Vertices, the most stable first.
+#[wasm_bindgen(skip_typescript)]
+pub fn rank(mesh: JsValue, ranking: &str) -> Result<Uint32Array, JsValue> {
+    let stability = osveta::rank(&mesh_from(&mesh)?, ranking_from(ranking)?);
+    Ok(indices(&stability.order))
+}
+
+/// Numbers at every vertex.
+#[wasm_bindgen(skip_typescript)]
+pub fn fields(mesh: JsValue, ranking: &str) -> Result<Object, JsValue> {
+    let fields = study::fields(&mesh_from(&mesh)?, ranking_from(ranking)?);
+    let result = Object::new();
+    set(&result, "gaussian", &reals(&fields.gaussian))?;
+    set(&result, "mean", &reals(&fields.mean))?;
+    set(&result, "stability", &reals(&fields.stability))?;
+    Ok(result)
+}
+
+/// Smooths a mesh and looks for its hosts.
+#[wasm_bindgen(skip_typescript)]
+pub fn trace(
+    mesh: JsValue,
+    smoothing: &str,
+    iterations: u32,
+    ranking: &str,
+    num_hosts: u32,
+) -> Result<Object, JsValue> {
+    let tracing = study::trace(
+        &mesh_from(&mesh)?,
+        smoothing_from(smoothing)?,
+        iterations_from(iterations)?,
+        ranking_from(ranking)?,
+        num_hosts as usize,
+    );
+    let result = Object::new();
+    set(&result, "positions", &reals(&tracing.positions))?;
+    set(&result, "triangles", &indices(&tracing.triangles))?;
+    set(&result, "deviation", &reals(&tracing.deviation))?;
+    set(&result, "hosts", &indices(&tracing.hosts))?;
+    set(&result, "found", &encoded(&tracing.found)?)?;
+    set(&result, "hostsAfter", &indices(&tracing.hosts_after))?;
+    Ok(result)
+}
+
+/// A row of Table I.
+#[wasm_bindgen(skip_typescript)]
+pub fn hosts(
+    mesh: JsValue,
+    smoothing: &str,
+    iterations: u32,
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options: HostsOptions = if options.is_undefined() {
+        HostsOptions::default()
+    } else {
+        decoded(options)?
+    };
+    encoded(&study::hosts(
+        &mesh_from(&mesh)?,
+        smoothing_from(smoothing)?,
+        iterations_from(iterations)?,
+        &options,
+    ))
+}
+
+/// A point of Fig. 5, for each way of finding.
+#[wasm_bindgen(skip_typescript)]
+pub fn errors(
+    mesh: JsValue,
+    case: JsValue,
+    on_progress: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    #[derive(Deserialize)]
+    #[serde(rename_all = "camelCase")]
+    struct Asked {
+        hosts: String,
+        smoothing: Smoothing,
+        iterations: u32,
+        strength: f64,
+        keys: u32,
+    }
+    let mesh = mesh_from(&mesh)?;
+    let asked: Asked = decoded(case)?;
+    let case = Case {
+        hosts: Hosts::every()
+            .find(|hosts| hosts.name() == asked.hosts)
+            .ok_or_else(|| argument(&format!("there are no hosts {:?}", asked.hosts)))?,
+        barycentre: Barycentre::Vertices,
+        strength: asked.strength,
+        smoothing: asked.smoothing,
+        iterations: iterations_from(asked.iterations)?,
+    };
+    let mut listener = Listener {
+        on_progress,
+        signal: None,
+    };
+    let errors = errors::errors(&mesh, &case, 0..u64::from(asked.keys), &mut listener);
+    encoded(&errors.map_err(Error::from).map_err(thrown)?)
+}
+
+fn mesh_from(value: &JsValue) -> Result<Mesh, JsValue> {
+    let wrong = || argument("a mesh has positions and triangles, three numbers each");
+    let field = |name: &str| Reflect::get(value, &name.into()).map_err(|_| wrong());
+    let positions: Float64Array = field("positions")?.dyn_into().map_err(|_| wrong())?;
+    let triangles: Uint32Array = field("triangles")?.dyn_into().map_err(|_| wrong())?;
+    let (positions, triangles) = (positions.to_vec(), triangles.to_vec());
+    let (points, left) = positions.as_chunks::<3>();
+    let (triangles, over) = triangles.as_chunks::<3>();
+    let is_whole = left.is_empty() && over.is_empty();
+    let is_finite = positions.iter().all(|x| x.is_finite());
+    let is_inside = |&vertex: &u32| (vertex as usize) < points.len();
+    if !(is_whole && is_finite && triangles.as_flattened().iter().all(is_inside)) {
+        return Err(wrong());
+    }
+    Ok(Mesh {
+        positions: points.iter().map(|&point| DVec3::from(point)).collect(),
+        triangles: triangles.to_vec(),
+    })
+}
+
+fn ranking_from(name: &str) -> Result<Ranking, JsValue> {
+    Ranking::from_name(name).ok_or_else(|| argument(&format!("there is no ranking {name:?}")))
+}
+
+fn smoothing_from(name: &str) -> Result<Smoothing, JsValue> {
+    Smoothing::from_name(name).ok_or_else(|| argument(&format!("there is no smoothing {name:?}")))
+}
+
+fn iterations_from(iterations: u32) -> Result<u32, JsValue> {
+    if iterations > MAX_ITERATIONS {
+        let most = format!("a mesh is smoothed at most {MAX_ITERATIONS} times");
+        return Err(argument(&most));
+    }
+    Ok(iterations)
+}
+
+fn decoded<T: for<'a> Deserialize<'a>>(value: JsValue) -> Result<T, JsValue> {
+    serde_wasm_bindgen::from_value(value).map_err(|error| argument(&error.to_string()))
+}
+
+fn reals(numbers: &[f64]) -> Float64Array {
+    Float64Array::from(numbers)
+}
+
+fn indices(vertices: &[u32]) -> Uint32Array {
+    Uint32Array::from(vertices)
+}

@@ -58,6 +58,7 @@ fn pipeline(criterion: &mut Criterion) {
     group.finish();
     let large = shapes::asteroid(200, 250);
     let mut group = criterion.benchmark_group("rank 50k vertices");
+    group.throughput(Throughput::Elements(large.positions.len() as u64));
     for ranking in Ranking::ALL {
         group.bench_function(ranking.name(), |b| b.iter(|| rank(&large, ranking)));
     }

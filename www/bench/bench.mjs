@@ -2,6 +2,7 @@
 // what is measured and calls this.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
+import { basename } from "node:path";
 import { setTimeout } from "node:timers/promises";
 import { parseArgs } from "node:util";
 import * as meshmark from "meshmark";
@@ -9,6 +10,7 @@ import { glbFromObj, sharedModel } from "../tests/support.mjs";
 import { startChromium } from "./chromium.mjs";
 import { prepareNative } from "./native.mjs";
 import { markdown } from "./report.mjs";
+import { torus } from "./torus.mjs";
 import { readStages } from "./stages.mjs";
 
 const OWNER = "Bench Owner";
@@ -20,8 +22,8 @@ const { values: options } = parseArgs({
   options: {
     runs: { type: "string" },
     cli: { type: "string" },
-    module: { type: "string" },
-    "gzip-budget": { type: "string" },
+    module: { type: "string", multiple: true },
+    "gzip-budget": { type: "string", multiple: true },
     stages: { type: "string" },
     "native-rustc": { type: "string" },
     "wasm-rustc": { type: "string" },
@@ -37,11 +39,13 @@ const work = {
   key: { owner: OWNER, passphrase: PASSPHRASE },
   embed: { model: host.bytes, tag: TAG, key },
   extract: { model: marked, key },
+  rank: { mesh: torus(200, 250), rankings: ["literal", "integrated", "collapse"] },
 };
 
 const native = prepareNative(options.cli, work);
 const chromium = await startChromium(work);
 const samples = { key: [], embed: [], extract: [] };
+const rankings = [];
 try {
   for (let run = 1; run <= Number(options.runs); run++) {
     for (const command of Object.keys(samples)) {
@@ -51,6 +55,7 @@ try {
       Object.values(sample).forEach((result) => assertDone(command, result));
       samples[command].push(sample);
     }
+    rankings.push(await rank());
     console.log(`run ${run} of ${options.runs}`);
   }
 } finally {
@@ -61,9 +66,9 @@ writeFileSync(
   options.output,
   markdown({
     samples,
+    rankings,
     stages: readStages(options.stages),
-    module: readFileSync(options.module),
-    gzipBudget: Number(options["gzip-budget"]),
+    modules: options.module.map((path, i) => ({ name: basename(path, "_bg.wasm"), bytes: readFileSync(path), gzipBudget: Number(options["gzip-budget"][i]) })),
     host: { name: host.name, bytes: host.bytes.length, vertices: report.vertices, triangles: meshmark.inspect(host.bytes).triangles },
     rustc: { native: options["native-rustc"], wasm: options["wasm-rustc"] },
     chromium: chromium.version,
@@ -76,6 +81,14 @@ function hostModel() {
   return bunny
     ? { name: "the Stanford bunny", bytes: glbFromObj(new TextDecoder().decode(bunny)) }
     : { name: "the generated demo model", bytes: meshmark.demoModel() };
+}
+
+/** The first and the second call in a new tab, in milliseconds by ranking. */
+async function rank() {
+  const results = await chromium.run("rank");
+  const vertices = work.rank.mesh.positions.length / 3;
+  results.forEach(({ ranked }) => ranked.forEach((number) => assert.equal(number, vertices)));
+  return results.map(({ ms }) => ms);
 }
 
 /** Times of work that was not done, or done otherwise, say nothing. */

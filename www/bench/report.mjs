@@ -12,23 +12,22 @@ const COMMANDS = {
 /**
  * @param samples by command, of every run the results `native`, `first` and `second` with `ms` by stage, the latter two also
  * with `memoryBytes`
+ * @param rankings of every run the first and the second call's milliseconds by ranking
  * @param stages what `readStages` gives
+ * @param modules each with `name`, `bytes` and `gzipBudget`
  */
-export function markdown({ samples, stages, module, gzipBudget, host, rustc, chromium }) {
-  const gzip = gzipSync(module, { level: 9 }).length;
+export function markdown({ samples, rankings, stages, modules, host, rustc, chromium }) {
   return `# Performance
 
 \`cargo xtask bench\` wrote this on ${new Date().toISOString().slice(0, 10)}.
 
-## Size of the WebAssembly module
+## Sizes of the WebAssembly modules
 
-| | bytes |
-|---|--:|
-| as it is | ${count(module.length)} |
-| by gzip, level 9 | ${count(gzip)} |
-| by brotli, level 11 | ${count(brotliCompressSync(module).length)} |
+| module | bytes | by gzip, level 9 | by brotli, level 11 | budget by gzip |
+|---|--:|--:|--:|--:|
+${modules.map(moduleRow).join("\n")}
 
-The budget in \`wasm-pack.toml\` is ${count(gzipBudget)} bytes by gzip, of which ${((100 * gzip) / gzipBudget).toFixed(0)} % are used.
+The npm package is the first; the page loads the study's when it is asked for. The budgets are in \`wasm-pack.toml\`.
 
 ## Times
 
@@ -58,6 +57,16 @@ column is for each vertex or, of one more key, for each way of reading that is d
 of SOLID, an address kind and a cut of RING. A key of a list is read from tables.
 
 ${stages.map(stageTable).join("\n\n")}
+
+## Ranking 50,000 vertices
+
+Milliseconds in Chromium, in a worker, with the mesh's way into the module and the ranking's out of it: the median of
+${rankings.length} runs (least–most). The mesh is a torus with bumps of 50,000 vertices and 100,000 triangles; native figures, of a
+mesh of as many, are above.
+
+| | first call | second call |
+|---|--:|--:|
+${Object.keys(rankings[0][0]).map((ranking) => rankingRow(ranking, rankings)).join("\n")}
 
 ## Memory of the module
 
@@ -105,6 +114,17 @@ function statistics(values) {
 
 function cell({ median, least, most }) {
   return `${median.toFixed(1)} (${least.toFixed(1)}–${most.toFixed(1)})`;
+}
+
+function moduleRow({ name, bytes, gzipBudget }) {
+  const gzip = gzipSync(bytes, { level: 9 }).length;
+  const budget = `${count(gzipBudget)}, ${((100 * gzip) / gzipBudget).toFixed(0)} % used`;
+  return `| ${[name, count(bytes.length), count(gzip), count(brotliCompressSync(bytes).length), budget].join(" | ")} |`;
+}
+
+function rankingRow(ranking, rankings) {
+  const cells = [0, 1].map((call) => cell(statistics(rankings.map((calls) => calls[call][ranking]))));
+  return `| ${[ranking, ...cells].join(" | ")} |`;
 }
 
 function stageTable({ title, stages }) {

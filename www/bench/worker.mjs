@@ -2,6 +2,7 @@
 // no message's way to the page is in them.
 import * as meshmark from "../meshmark/dist/index.js";
 import load from "../meshmark/wasm/meshmark.js";
+import loadStudy, * as study from "../app/study-wasm/study.js";
 
 const commands = {
   key({ owner, passphrase }, clock) {
@@ -16,13 +17,21 @@ const commands = {
   extract({ model, key }, clock) {
     return { tag: meshmark.detect(model, undefined, key, undefined, clock.start).tag };
   },
+  async rank({ mesh, rankings }, clock) {
+    await loadStudy();
+    const ranked = rankings.map((ranking) => {
+      clock.start(ranking);
+      return study.rank(mesh, ranking).length;
+    });
+    return { ranked };
+  },
 };
 
 self.addEventListener("message", async ({ data: { command, ...request } }) => {
   try {
     await meshmark.init();
     const clock = new Clock();
-    const done = commands[command](request, clock);
+    const done = await commands[command](request, clock);
     clock.stop();
     const { memory } = await load(); // loads nothing any more: gives the module's exports
     self.postMessage({ result: { ...done, ms: clock.ms, memoryBytes: memory.buffer.byteLength } });

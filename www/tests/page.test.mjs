@@ -485,6 +485,62 @@ test("a made key file marks and finds, and a file of another length is refused",
   assert.equal(await headline(), "Your mark was found");
 });
 
+test("the study begins with the model in Protect, in a worker that was not there before, and is measured until it is cancelled", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  assert.equal(page.workers().length, 1);
+  await page.getByRole("tab", { name: "Study" }).click();
+  const traced = page.locator("#traced");
+  await traced.getByText("Ranked anew").waitFor();
+  assert.equal(page.workers().length, 2);
+  assert.match(await facts().textContent(), /demo\.glb.*11,7\d\d triangles.*from 12,\d+ vertices · 2\d,\d+ triangles/);
+
+  const found = async () => parseInt(await traced.locator("dd").first().textContent(), 10);
+  const once = await found();
+  assert.ok(once > 0 && once < 1000, `${once}`);
+  await page.locator("label", { hasText: /^0$/ }).click();
+  await traced.getByText("1,000 of 1,000").waitFor();
+  await page.getByLabel("Ranking").selectOption("literal");
+  await page.locator("label", { hasText: /^1$/ }).click();
+  assert.ok(await eventually(async () => (await found()) < once), "the literal ranking finds as many");
+
+  const before = await canvas().screenshot();
+  await button("Smoothed").click();
+  await page.getByRole("combobox", { name: "Hosts", exact: true }).selectOption("fate");
+  await view().getByText(/\d+ found again/).waitFor();
+  assert.notDeepEqual(await canvas().screenshot(), before);
+  for (const [field, said] of [["stability", "place in the ranking"], ["gaussian", "1/units²"], ["mean", "1/units;"], ["deviation", "% of the diagonal"]]) {
+    await page.getByLabel("Colours of the surface").selectOption(field);
+    await view().locator(".legend", { hasText: said }).waitFor();
+  }
+
+  await page.getByLabel("Smoothing").selectOption("laplacian");
+  await button("Measure Table I and Fig. 5").click();
+  await page.getByRole("region", { name: "Table I" }).locator("tbody tr:not(.rule)").nth(8).waitFor();
+  await page.getByRole("region", { name: "Fig. 5" }).locator(".plot circle").nth(4).waitFor();
+  await button("Cancel").click();
+  await view().getByText("Cancelled. Nothing was changed.").waitFor();
+  assert.equal(await button("Measure Table I and Fig. 5").getAttribute("aria-disabled"), null);
+  await page.getByLabel("Hosts", { exact: true }).and(page.locator("input")).fill("500");
+  await traced.getByText(" of 500 ").first().waitFor(); // by a new worker
+});
+
+test("what is wrong with a study is said in words", async () => {
+  await page.getByRole("tab", { name: "Study" }).click();
+  await button("Measure Table I and Fig. 5").click();
+  await view().getByText("First drop a model, or choose one.").waitFor();
+  await drop(onDisk("broken.glb", "glTF but no more"));
+  await result().waitFor();
+  assert.match(await headline(), /^Cannot study: /);
+  await dropped(onDisk("cube.glb", glbFromObj(CUBE)));
+  const hosts = page.getByLabel("Hosts", { exact: true }).and(page.locator("input"));
+  await page.locator("#traced").getByText("Ranked anew").waitFor();
+  await hosts.fill("9");
+  await view().getByText("Give a whole number from 1 to 8.").waitFor();
+  await hosts.fill("8");
+  await button("Measure Table I and Fig. 5").click();
+  await view().getByText(/^Not measured: /).waitFor(); // a cube has no thousand hosts
+});
+
 test("what a tag cannot be is said while it is typed", async () => {
   const tag = page.getByLabel("Tag", { exact: true });
   for (const [text, problem] of [
@@ -549,13 +605,20 @@ test("the keyboard does all of it", async () => {
 test("every control has a name", async () => {
   await page.getByRole("button", { name: "Try the demo model" }).click();
   await facts().getByText("demo.glb").waitFor();
+  await assertNamed();
+  await page.getByRole("tab", { name: "Study" }).click();
+  await page.locator("#traced").getByText("Ranked anew").waitFor();
+  await assertNamed();
+});
+
+async function assertNamed() {
   const controls = await page.locator("button:visible, input:visible, select:visible, canvas[tabindex]:visible").all();
   assert.ok(controls.length > 10);
   for (const control of controls) {
     const name = (await control.ariaSnapshot()).match(/"(.+)"/)?.[1];
     assert.ok(name, await control.evaluate((element) => element.outerHTML));
   }
-});
+}
 
 for (const [name, options] of [
   ["desktop-light", {}],

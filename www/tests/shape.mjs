@@ -2,6 +2,7 @@
 import ts from "typescript";
 
 const { TypeFlags } = ts;
+const TYPED_ARRAYS = ["Uint8Array", "Uint32Array", "Float64Array"];
 
 /** The functions and types that a declaration file exports. */
 export function readContract(file) {
@@ -29,8 +30,8 @@ export function readContract(file) {
     if (type.isLiteral() || type.flags & (TypeFlags.Null | TypeFlags.Undefined | TypeFlags.String | TypeFlags.Number | TypeFlags.BooleanLiteral)) {
       return isPrimitive(type, value) ? [] : [`${path}: ${describe(value)} is not ${checker.typeToString(type)}`];
     }
-    if (type.symbol?.name === "Uint8Array") {
-      return value instanceof Uint8Array ? [] : [`${path}: ${describe(value)} is not a Uint8Array`];
+    if (TYPED_ARRAYS.includes(type.symbol?.name)) {
+      return value?.constructor.name === type.symbol.name ? [] : [`${path}: ${describe(value)} is not a ${type.symbol.name}`];
     }
     if (checker.isArrayType(type)) {
       const [element] = checker.getTypeArguments(type);

@@ -7,16 +7,17 @@ import { renamed, type Model } from "./model";
 import { actions, card, carrierTable, details, numbers, present, readingRows } from "./outcome";
 import { checkReport } from "./report";
 import { saveJson } from "./save";
+import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
 import { View } from "./view";
 import { homes, VERDICTS } from "./words";
 
-export class Check extends View {
+export class Check extends View<Stage> {
   readonly #expected = find<HTMLInputElement>("#expected");
 
   constructor(root: HTMLElement) {
-    super(root, "Cannot check");
+    super(root, "Cannot check", Stage);
     watchTag(this.#expected);
   }
 

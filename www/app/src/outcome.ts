@@ -10,7 +10,7 @@ export function card(verdict: Verdict | "error", headline: string | Node[], sent
 }
 
 /** What could not be done, and why; the code is for whoever reports it. */
-export function errorCard(what: "Cannot mark" | "Cannot check" | "Cannot open" | "Cannot start", error: unknown): HTMLElement {
+export function errorCard(what: "Cannot mark" | "Cannot check" | "Cannot study" | "Cannot open" | "Cannot start", error: unknown): HTMLElement {
   const { text, code, path } = problem(error);
   const place = path ? [", at ", h("code", {}, path)] : [];
   const headline = [h("strong", {}, what), document.createTextNode(`: ${text}.`)];

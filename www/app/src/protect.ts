@@ -8,6 +8,7 @@ import { actions, card, carrierTable, details, displacement, forecastList, note,
 import { Preview } from "./preview";
 import { embedReport } from "./report";
 import { save, saveJson } from "./save";
+import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
 import { Trial } from "./trial";
@@ -28,7 +29,7 @@ const REST = 500;
 /** The tag that is tried before there is one. */
 const STAND_IN_TAG = "PREVIEW";
 
-export class Protect extends View {
+export class Protect extends View<Stage> {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
   readonly #carriers = [...find("#carriers").querySelectorAll("input")];
@@ -44,7 +45,7 @@ export class Protect extends View {
     root: HTMLElement,
     readonly onCheck: (marked: Model) => void,
   ) {
-    super(root, "Cannot mark");
+    super(root, "Cannot mark", Stage);
     watchTag(this.#tag);
     const hint = find("#strength-hint");
     const describe = () => (hint.textContent = STRENGTHS[this.#strength.value as Preset]);

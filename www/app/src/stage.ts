@@ -1,21 +1,26 @@
 /** The left side of a view: the empty state that teaches, or the model and the tools to look at it. */
 import type { EmbedReport, Inspection } from "meshmark";
 import { find, h, instantiate } from "./dom";
-import type { Model, NamedFile } from "./model";
+import { startIntake, type IntakeEvents } from "./intake";
+import type { Model } from "./model";
 import { drawLegend } from "./viewer/colormap";
 import type { Look, Viewer } from "./viewer/viewer";
 import { bytes, count, percent, significant } from "./words";
 
-export interface StageEvents {
-  onFiles(files: NamedFile[]): void;
-  onDemo(): void;
+export interface StageEvents extends IntakeEvents {
   onClose(): void;
+}
+
+/** The left side of a view as a view knows it. */
+export interface Showing {
+  show(model: Model, inspection: Inspection | null): Promise<void>;
+  close(): void;
 }
 
 /** What is chosen by one of several buttons, each of which names its choice in the attribute `data-` and this. */
 const SEGMENTS = ["version", "shading", "normals"] as const;
 
-export class Stage {
+export class Stage implements Showing {
   readonly #root: HTMLElement;
   readonly #intake: HTMLElement;
   readonly #viewing = h("div", { class: "viewing", hidden: "" });
@@ -28,13 +33,12 @@ export class Stage {
   constructor(view: HTMLElement, events: StageEvents) {
     this.#root = find("[data-stage]", view);
     this.#intake = find("[data-intake]", view);
-    this.#intake.append(instantiate("#intake-actions"));
     this.#viewing.append(instantiate("#viewer"));
     this.#facts = find(".facts", this.#viewing);
     this.#root.append(this.#viewing);
     this.#canvas = find<HTMLCanvasElement>(".viewer > canvas", this.#viewing);
     drawLegend(find<HTMLCanvasElement>(".legend canvas", this.#viewing));
-    this.#startIntake(events);
+    startIntake(this.#intake, events);
     this.#startTools(events);
   }
 
@@ -108,21 +112,6 @@ export class Stage {
     const [{ Viewer }, { loadScene }] = await Promise.all([import("./viewer/viewer"), import("./viewer/load")]);
     this.#viewer ??= new Viewer(this.#canvas);
     return { loadScene, viewer: this.#viewer };
-  }
-
-  #startIntake(events: StageEvents): void {
-    for (const kind of ["files", "folder"]) {
-      const input = find<HTMLInputElement>(`[data-input="${kind}"]`, this.#intake);
-      find(`[data-choose="${kind}"]`, this.#intake).addEventListener("click", () => input.click());
-      input.addEventListener("change", () => {
-        const files = [...(input.files ?? [])].map((file) => ({ path: file.webkitRelativePath || file.name, file }));
-        input.value = ""; // so that the same file can be chosen again
-        if (files.length > 0) {
-          events.onFiles(files);
-        }
-      });
-    }
-    find('[data-choose="demo"]', this.#intake).addEventListener("click", () => events.onDemo());
   }
 
   #startTools(events: StageEvents): void {

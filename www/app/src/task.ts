@@ -11,6 +11,12 @@ export interface Progress {
   onProgress: OnProgress;
 }
 
+/** Work whose steps have words of their own. */
+export interface Task extends Progress {
+  /** @param fraction of the whole, from 0 to 1 */
+  say(words: string, fraction: number): void;
+}
+
 /**
  * Runs `work` with a progress card in `outcome`, in place of what stood there; its button aborts `controller`.
  *
@@ -19,7 +25,7 @@ export interface Progress {
 export async function runTask<T>(
   outcome: HTMLElement,
   controller: AbortController,
-  work: (progress: Progress) => Promise<T>,
+  work: (task: Task) => Promise<T>,
 ): Promise<T | undefined> {
   const words = h("p");
   const bar = h("progress", { "aria-label": "Progress of this step" });
@@ -41,8 +47,12 @@ export async function runTask<T>(
     }
     bar.value = fraction;
   };
+  const say = (text: string, fraction: number) => {
+    words.textContent = text;
+    bar.value = fraction;
+  };
   try {
-    return await work({ signal: controller.signal, stage, onProgress });
+    return await work({ signal: controller.signal, stage, onProgress, say });
   } catch (error) {
     if (error instanceof MeshmarkError && error.code === "aborted") {
       if (card.isConnected) {

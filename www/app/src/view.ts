@@ -1,14 +1,14 @@
-/** What both views do: take a model in, show it, say what is wrong with it. */
+/** What all views do: take a model in, show it, say what is wrong with it. */
 import type { Inspection } from "meshmark";
 import { find } from "./dom";
 import { engine } from "./engine";
 import { modelFrom, type Model, type NamedFile } from "./model";
 import { errorCard, note, present } from "./outcome";
-import { Stage } from "./stage";
+import type { Showing, StageEvents } from "./stage";
 
-export abstract class View {
+export abstract class View<S extends Showing> {
   readonly form: HTMLFormElement;
-  protected readonly stage: Stage;
+  protected readonly stage: S;
   protected readonly outcome: HTMLElement;
   protected model: Model | undefined;
   protected inspection: Inspection | undefined;
@@ -16,11 +16,12 @@ export abstract class View {
 
   constructor(
     readonly root: HTMLElement,
-    readonly cannot: "Cannot mark" | "Cannot check",
+    readonly cannot: "Cannot mark" | "Cannot check" | "Cannot study",
+    OwnStage: new (view: HTMLElement, events: StageEvents) => S,
   ) {
     this.form = find<HTMLFormElement>("[data-form]", root);
     this.outcome = find("[data-outcome]", root);
-    this.stage = new Stage(root, {
+    this.stage = new OwnStage(root, {
       onFiles: (files) => void this.takeFiles(files),
       onDemo: () => void this.takeDemo(),
       onClose: () => this.close(),
@@ -87,6 +88,11 @@ export abstract class View {
     this.model = undefined;
     this.outcome.replaceChildren();
     this.stage.close();
+  }
+
+  /** The model that is shown, if any. */
+  get shown(): Model | undefined {
+    return this.model;
   }
 
   /** Whether a person waits for something. */

@@ -10,11 +10,11 @@ export type Shading = "surface" | "raking" | "heat";
 export type Normals = "geometry" | "file";
 
 const BEHIND_WIRES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }; // so that edges drawn on a surface are whole
-const HEAT = new MeshBasicMaterial({ vertexColors: true, toneMapped: false, ...BEHIND_WIRES });
-const CLAY = new MeshStandardMaterial({ color: 0xb9b4aa, roughness: 1, ...BEHIND_WIRES });
+export const HEAT = new MeshBasicMaterial({ vertexColors: true, toneMapped: false, ...BEHIND_WIRES });
+export const CLAY = new MeshStandardMaterial({ color: 0xb9b4aa, roughness: 1, ...BEHIND_WIRES });
 const CLAY_SHEET = CLAY.clone(); // seen from both sides
 CLAY_SHEET.side = DoubleSide;
-const WIRES = new MeshBasicMaterial({ wireframe: true, color: 0x70787f, transparent: true, opacity: 0.3, toneMapped: false });
+export const WIRES = new MeshBasicMaterial({ wireframe: true, color: 0x70787f, transparent: true, opacity: 0.3, toneMapped: false });
 
 export class Layer {
   readonly meshes: Mesh[] = [];

@@ -1,0 +1,95 @@
+// src/wasm/study.d.ts is written by hand; these tests hold it to the study's module, in both directions.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import * as meshmark from "meshmark";
+import * as study from "../app/study-wasm/study.js";
+import { readContract } from "./shape.mjs";
+import { glbOf, repository } from "./support.mjs";
+
+const contract = readContract(fileURLToPath(new URL("src/wasm/study.d.ts", repository)));
+const HOSTS = 100;
+let mesh;
+
+before(async () => {
+  await meshmark.init();
+  await study.default({ module_or_path: readFileSync(new URL("../app/study-wasm/study_bg.wasm", import.meta.url)) });
+  mesh = study.prepare(meshmark.demoModel(), undefined, "optimize");
+});
+
+test("the module exports exactly the functions that the contract declares, with their numbers of arguments", () => {
+  const exported = Object.keys(study).filter((name) => !["default", "initSync"].includes(name));
+  assert.deepEqual(exported.sort(), [...contract.functions.keys()].sort());
+  for (const [name, parameters] of contract.functions) {
+    assert.equal(study[name].length, parameters, name);
+  }
+});
+
+test("real results have exactly the declared shapes", () => {
+  assert.deepEqual(contract.differences("Parameters", study.parameters()), []);
+  assert.deepEqual(contract.differences("Prepared", mesh), []);
+  assert.deepEqual(contract.differences("Fields", study.fields(mesh, "literal")), []);
+  assert.deepEqual(contract.differences("Tracing", study.trace(mesh, "meshSmooth", 1, "integrated", HOSTS)), []);
+  assert.deepEqual(contract.differences("HostsRow", study.hosts(mesh, "loop", 1, { draws: 2, numHosts: HOSTS })), []);
+  assert.deepEqual(contract.differences("HostsRow", study.hosts(mesh, "taubin", 0, undefined)), []);
+  const found = ["random", "literal", "all"].flatMap((hosts) => study.errors(mesh, { hosts, smoothing: "laplacian", iterations: 1, strength: 8e-4, keys: 1 }, undefined));
+  assert.deepEqual([...new Set(found.map(({ finding }) => finding))].sort(), ["cells", "original", "ranked", "traced"]);
+  for (const errors of found) {
+    assert.deepEqual(contract.differences("Errors", errors), []);
+  }
+});
+
+test("every name of the contract is known to the module, and no other", () => {
+  const namesOf = (type) => readFileSync(new URL("src/wasm/study.d.ts", repository), "utf8").match(new RegExp(`export type ${type} =([^;]*);`))[1].match(/(?<=")\w+(?=")/g);
+  const tetrahedron = { positions: new Float64Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), triangles: new Uint32Array([0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3]) };
+  namesOf("Ranking").forEach((ranking) => assert.equal(study.rank(tetrahedron, ranking).length, 4));
+  namesOf("Smoothing").forEach((smoothing) => study.trace(tetrahedron, smoothing, 1, "collapse", 1));
+  assert.throws(() => study.rank(tetrahedron, "other"), { code: "options.argument" });
+  assert.throws(() => study.trace(tetrahedron, "other", 1, "collapse", 1), { code: "options.argument" });
+});
+
+test("the mesh is of the paper's size, and its rankings are permutations of what was not rejected", () => {
+  const { numFaces } = study.parameters();
+  assert.ok(mesh.triangles.length / 3 <= numFaces && mesh.modelTriangles > numFaces);
+  const order = study.rank(mesh, "collapse");
+  assert.equal(new Set(order).size, order.length);
+  assert.ok(order.length > 0.9 * (mesh.positions.length / 3));
+});
+
+test("vertices keep their indices in every smoothing, and without one all hosts are found", () => {
+  const vertices = mesh.positions.length / 3;
+  const unchanged = study.trace(mesh, "meshSmooth", 0, "collapse", HOSTS);
+  assert.ok(unchanged.found.every(Boolean) && unchanged.found.length === HOSTS);
+  assert.deepEqual(unchanged.positions, mesh.positions);
+  const { positions, deviation } = study.trace(mesh, "meshSmooth", 1, "collapse", HOSTS);
+  assert.ok(positions.length / 3 > 5 * vertices);
+  const moved = (v) => Math.hypot(...[0, 1, 2].map((k) => positions[3 * v + k] - mesh.positions[3 * v + k])) / mesh.diagonal;
+  [0, 1, vertices - 1].forEach((v) => assert.ok(Math.abs(moved(v) - deviation[v]) < 1e-12));
+});
+
+test("what is no model and no mesh is refused with a code", () => {
+  assert.deepEqual(contract.differences("MeshmarkErrorObject", caught(() => study.prepare(new Uint8Array(3), undefined, "optimize"))), []);
+  const small = study.prepare(glbOf({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], indices: [0, 1, 2] }), undefined, "simplify");
+  for (const wrong of [
+    () => study.rank({ ...small, triangles: new Uint32Array([0, 1, 3]) }, "literal"),
+    () => study.rank({ ...small, triangles: new Uint32Array([0, 1]) }, "literal"),
+    () => study.rank({ ...small, positions: new Float64Array(9).fill(NaN) }, "literal"),
+    () => study.rank({ ...small, positions: [0, 0, 0] }, "literal"),
+    () => study.rank(undefined, "literal"),
+    () => study.trace(small, "loop", 3, "literal", 1),
+    () => study.hosts(small, "loop", 1, { draws: "many" }),
+    () => study.errors(small, {}, undefined),
+  ]) {
+    assert.equal(caught(wrong).code, "options.argument", String(wrong));
+  }
+});
+
+function caught(f) {
+  try {
+    f();
+  } catch (error) {
+    return error;
+  }
+  return assert.fail("nothing was thrown");
+}

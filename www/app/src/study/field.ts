@@ -4,8 +4,8 @@ import { percent, significant } from "../words";
 
 export type FieldName = "stability" | "gaussian" | "mean" | "deviation";
 
-/** A curvature beyond this share of all has the colour of the scale's end: a few sharp vertices would leave no colour for the rest. */
-const SHOWN = 0.95;
+/** What is larger than this share of all has the colour of the scale's end: a few vertices would leave no colour for the rest. */
+const SHOWN = 0.9;
 
 export interface Field {
   title: string;
@@ -39,13 +39,17 @@ export function fieldOf(name: FieldName, fields: Fields | undefined, tracing: Tr
 function deviation({ deviation, positions }: Tracing, diagonal: number): Field {
   const values = new Float64Array(positions.length / 3).fill(NaN);
   values.set(deviation);
-  const most = deviation.reduce((a, b) => Math.max(a, b), 0);
-  const row = (text: (of: number) => string) => [0, most / 2, most].map((of) => (of === 0 ? "0" : text(of)));
+  const most = shown(deviation);
+  const row = (text: (of: number) => string) => (most === 0 ? ["0", "", ""] : ["0", text(most / 2), `≥ ${text(most)}`]);
   return { title: "Deviation in units, and in % of the diagonal", values, range: [0, most], marks: [row((of) => significant(of * diagonal)), row(percent)] };
 }
 
 function signed(title: string, values: Float64Array): Field {
-  const sizes = values.map(Math.abs).sort();
-  const end = sizes[Math.floor(SHOWN * (sizes.length - 1))] ?? 0;
+  const end = shown(values.map(Math.abs));
   return { title, values, range: [-end, end], marks: [[`≤ −${significant(end)}`, "0", `≥ ${significant(end)}`]] };
+}
+
+/** The end of a scale for sizes. */
+function shown(sizes: Float64Array): number {
+  return sizes.slice().sort()[Math.floor(SHOWN * (sizes.length - 1))] ?? 0;
 }

@@ -166,8 +166,8 @@ impl Edges {
         self.edges().filter_map(|sides| match sides {
             [first, second] => Some(Pair {
                 ends: [first.low, first.high],
-                faces: [first.face, second.face],
-                agree: first.ascending != second.ascending,
+                faces: [first.face(), second.face()],
+                agree: first.is_ascending() != second.is_ascending(),
             }),
             _ => None,
         })

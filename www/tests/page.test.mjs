@@ -464,6 +464,8 @@ test("after one visit the page works without a network, through a reload", async
   await facts().getByText("demo.glb").waitFor();
   await mark();
   assert.equal(await headline(), "Your mark is in the copy");
+  await page.getByRole("tab", { name: "Study" }).click();
+  await page.locator("#traced").getByText("Ranked anew").waitFor();
 });
 
 test("a made key file marks and finds, and a file of another length is refused", async () => {

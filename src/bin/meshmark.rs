@@ -20,9 +20,6 @@ use std::time::Instant;
 /// What evidence begins with.
 const EVIDENCE: &[u8] = b"MMEV";
 
-/// Keys for which tables pay.
-const MANY_KEYS: usize = 64;
-
 const FOUND: u8 = 0;
 const NOT_FOUND: u8 = 1;
 const CANNOT_CHECK: u8 = 2;
@@ -367,11 +364,6 @@ fn test(input: &Path, keys: &Path, clock: &mut Clock) -> Result<(Value, u8), Fai
         measure(&model, &files, clock)?
     };
     clock.start("test");
-    let evidence = if keys.len() < MANY_KEYS {
-        evidence
-    } else {
-        evidence.for_many_keys()
-    };
     let charge = libm::log(keys.len() as f64);
     let mut code = NOT_FOUND;
     let mut readings = Vec::new();

@@ -234,8 +234,9 @@ impl Measurement {
         Surfaces::new(mesh).collect()
     }
 
-    /// The same measurement, made ready to be read with many keys, as if it were read as often as they are: what the surfaces show at
-    /// any place is tabulated, which takes as long as reading some tens of keys does, and hundreds of megabytes.
+    /// The same measurement, made ready to be read with many keys: what each surface shows at any place is tabulated. That takes up
+    /// to seconds and some 60 MB a surface. A key then costs about half on surfaces whose tables are small, and no less where they
+    /// are too large for the processor's cache.
     ///
     /// What is between the table's points is interpolated, with an RMS error below 2 % of a quantizer's step. No key has a part in
     /// that: the bound of what is read is exact.

@@ -252,6 +252,49 @@ fn cli_writes_and_reads_a_note() {
     assert!(!here.path("no.glb").exists());
 }
 
+/// The seed paper's study of a small model: nothing is lost where nothing was smoothed, and what is blind and ranked is at chance.
+#[test]
+fn cli_studies() {
+    let here = Folder::new("study");
+    let pebble = meshmark::mesh::shapes::asteroid(30, 45);
+    fs::write(here.path("pebble.glb"), meshmark::scene::to_glb(&pebble)).unwrap();
+    let (code, report, said) = here.run("study pebble.glb --keys 1 --seed 3");
+    assert_eq!(code, 0, "{report} {said}");
+    assert_eq!(
+        (&report["vertices"], &report["faces"]),
+        (&1352.into(), &2700.into())
+    );
+    let table = report["table1"].as_array().unwrap();
+    assert_eq!(table.len(), 3);
+    assert_eq!(table[0]["rules"][0]["random"]["mean"], 1352.0);
+    assert_eq!(table[1]["num_vertices"], 1352 + 2700 + 4050);
+    let errors = report["figure5"]["against_smoothing"].as_array().unwrap();
+    let payload = |hosts: &str, finding: &str| {
+        let mut here = errors.iter().filter(|errors| errors["iterations"] == 0);
+        let errors = here.find(|errors| errors["hosts"] == hosts && errors["finding"] == finding);
+        errors.unwrap()["payload"]["mean"].as_f64().unwrap()
+    };
+    assert_eq!(payload("collapse", "traced"), 0.0);
+    assert_eq!(payload("all", "cells"), 0.0);
+    assert!(payload("collapse", "ranked") > 0.25);
+    assert!(report["figure5"]["against_strength"][0]["strength"].is_number());
+
+    let (code, again, _) = here.run("study pebble.glb --keys 1 --seed 3");
+    assert_eq!(
+        (code, &again["table1"], &again["figure5"]),
+        (0, &report["table1"], &report["figure5"])
+    );
+    let (code, ..) = here.run("study pebble.glb --preparation crumple");
+    assert_eq!(code, 2);
+    let small = meshmark::mesh::shapes::asteroid(8, 12);
+    fs::write(here.path("small.glb"), meshmark::scene::to_glb(&small)).unwrap();
+    let (code, report, _) = here.run("study small.glb");
+    assert_eq!(
+        (code, &report["error"]["code"]),
+        (2, &"carrier.too-few-hosts".into())
+    );
+}
+
 #[test]
 fn cli_inspects() {
     let here = Folder::new("inspect");

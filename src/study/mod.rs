@@ -5,11 +5,13 @@
 pub mod errors;
 mod hosts;
 mod map;
+mod report;
 mod smoothing;
 mod spread;
 
 pub use hosts::{Count, HostsOptions, HostsRow, Rule, RuleCounts, hosts};
 pub use map::{Fields, Tracing, fields, trace};
+pub use report::{Study, study};
 pub use smoothing::Smoothing;
 pub use spread::Spread;
 

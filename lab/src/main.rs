@@ -1,4 +1,4 @@
-//! The robustness lab: one grid of attacks x models x strengths, and the table of what the mark survived.
+//! The robustness lab: one grid of attacks x models x strengths, and the table of what the mark survived; and the seed paper's study.
 //!
 //! Everything random comes from one seed, which the system draws and the table states; `--seed` runs a table again.
 
@@ -9,6 +9,7 @@ mod measure;
 mod models;
 mod report;
 mod seed;
+mod study;
 
 use clap::Parser;
 use meshmark::Strength;
@@ -32,6 +33,9 @@ struct Arguments {
     /// Instead of the grid: so many tests with keys that marked nothing; writes docs/FALSE_POSITIVES.md.
     #[arg(long, value_name = "N")]
     false_positives: Option<u64>,
+    /// Instead of the grid: the seed paper's study; writes docs/STUDY.md, and its plots in docs/study.
+    #[arg(long, conflicts_with = "false_positives")]
+    study: bool,
     /// Another file to write.
     #[arg(long)]
     output: Option<PathBuf>,
@@ -43,6 +47,9 @@ const STRENGTHS: [(&str, Strength); 3] = [
     ("balanced", Strength::BALANCED),
     ("strong", Strength::STRONG),
 ];
+
+/// Keys that the study's errors are averaged over.
+const STUDY_KEYS: u32 = 2;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -63,8 +70,8 @@ fn run(arguments: &Arguments) -> Result<PathBuf, String> {
         Some(number) => Seed::new(number),
         None => Seed::new(getrandom::u64().map_err(|error| error.to_string())?),
     };
-    let (models, unread) = models::all(arguments.models.as_deref())?;
     let name = match arguments.false_positives {
+        _ if arguments.study => "STUDY.md",
         Some(_) => "FALSE_POSITIVES.md",
         None => "ROBUSTNESS.md",
     };
@@ -73,6 +80,12 @@ fn run(arguments: &Arguments) -> Result<PathBuf, String> {
         .output
         .clone()
         .unwrap_or_else(|| root.join("docs").join(name));
+    let folder = arguments.models.as_deref();
+    if arguments.study {
+        study::write(&models::of_study(folder)?, &seed, STUDY_KEYS, &path)?;
+        return Ok(path);
+    }
+    let (models, unread) = models::all(folder)?;
     let write = |text: &str| {
         std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
     };

@@ -44,6 +44,29 @@ const QUICK: [&str; 3] = ["rocker-arm", "cow", "chr_knight"];
 
 /// Every model, files first, and what files could not be read.
 pub fn all(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
+    let (mut models, unread) = from_files(folder)?;
+    models.extend(generated());
+    Ok((models, unread))
+}
+
+/// The study's models: plain shapes from files, and two that are generated with four times the faces that the paper's has.
+pub fn of_study(folder: Option<&Path>) -> Result<Vec<Model>, String> {
+    let (mut models, _) = from_files(folder)?;
+    models.retain(|model| model.class == Class::Plain);
+    let shapes = [
+        ("asteroid", shapes::asteroid(130, 180)),
+        ("torus knot", shapes::torus_knot(366, 64)),
+    ];
+    models.extend(shapes.into_iter().map(|(name, mesh)| Model {
+        name: name.to_owned(),
+        class: Class::Plain,
+        bytes: to_glb(&mesh),
+        is_quick: true,
+    }));
+    Ok(models)
+}
+
+fn from_files(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
     let paths = match folder {
         Some(folder) => files(folder)?,
         None => {
@@ -68,7 +91,6 @@ pub fn all(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
             }
         }
     }
-    models.extend(generated());
     Ok((models, unread))
 }
 

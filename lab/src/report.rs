@@ -162,7 +162,7 @@ fn line(row: &Row, cells: &[(&str, &Cell)]) -> String {
 }
 
 /// The lower median, times a unit; nothing of nothing.
-fn median(mut numbers: Vec<f64>, decimals: usize, unit: f64) -> String {
+pub fn median(mut numbers: Vec<f64>, decimals: usize, unit: f64) -> String {
     numbers.sort_by(f64::total_cmp);
     let middle = numbers.get(numbers.len().saturating_sub(1) / 2);
     let Some(middle) = middle else {

@@ -29,6 +29,7 @@ cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the nex
 cargo xtask test                  every check there is
 cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs
 cargo xtask lab [--quick]         docs/ROBUSTNESS.md: what marks survive; more with --help
+cargo xtask study                 docs/STUDY.md: the seed paper's study; more with --help
 
 Each installs what it needs and is missing.";
 
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
             bench::parse_runs(runs).and_then(|runs| bench::bench(&mut steps, runs))
         }
         ["lab", ref arguments @ ..] => lab::lab(&mut steps, arguments),
+        ["study", ref arguments @ ..] => lab::lab(&mut steps, &[&["--study"], arguments].concat()),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -94,7 +94,7 @@ impl Trial<'_> {
                 )
                 .map(|embedding| embedding.model),
             };
-            written.map_err(|error| error.to_string())
+            written.map_err(|error| error.code().to_owned())
         };
         writes.iter().try_fold(self.model.to_vec(), write)
     }

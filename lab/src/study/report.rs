@@ -261,7 +261,9 @@ fn figure_5(text: &mut String, outcomes: &[&Outcome]) -> Vec<(String, String)> {
          ranking. The mark itself changes the ranking, the hosts arrive as a permutation, and codes against losses and gains do not \
          mend permutations. **Cells**: blind, the bit of a vertex is that of its direction in the suspect's frame; all vertices are hosts, and \
          none has to be found. Raw: before the codes. The paper measures from the mean of the vertices, which subdivision moves because new vertices are not \
-         spread as the old ones; the third version measures from the centroid of the volume.\n",
+         spread as the old ones; the third version measures from the centroid of the volume. \
+         Shapes like the torus knot, two of whose spreads are equal but for its relief, have no frame to go by: whatever needs one fails on them without any \
+         attack.\n",
     );
     let mut plots = Vec::new();
     for (name, title, figure) in figures() {

@@ -2,7 +2,7 @@
 //!
 //! The paper gives one number a column and does not say how it counts. Its column of one iteration is within reach of
 //! [`Rule::Index`]: 968 at random, where that rule's chance level is 979, and 1316 by OSVETA, 1.34 times that. How near
-//! [`Ranking::Literal`] comes depends on how the mesh was prepared: on the Stanford bunny 1.40 times after
+//! [`Ranking::Literal`] comes depends on how the mesh was prepared: on the Stanford bunny 1.32 times after
 //! [`Preparation::Optimize`](super::Preparation::Optimize), 1.87 times after
 //! [`Preparation::Simplify`](super::Preparation::Simplify). Meshes that hardly had to be simplified differ more, and no rule
 //! fits both columns.

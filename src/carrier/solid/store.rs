@@ -7,6 +7,7 @@
 use super::PITCHES;
 use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, corner, number};
 use glam::DVec3;
+use std::f64::consts::LN_2;
 
 /// Steps in a cell's edge.
 const OFFSETS: f64 = 256.0;
@@ -65,7 +66,9 @@ impl Store {
             centre: self.centre(rounded.cell, rounded.offset),
             area: DVec3::from_array(rounded.area.map(f64::from)) * area_unit,
             moment: f64::from(rounded.moment) * f64::from(self.moment_unit),
-            weight: LARGEST * area_unit * libm::exp2(-f64::from(rounded.lightness) / WEIGHTS),
+            weight: LARGEST
+                * area_unit
+                * libm::exp(-f64::from(rounded.lightness) * (LN_2 / WEIGHTS)),
         };
         self.rounded.iter().map(cluster).collect()
     }
@@ -94,7 +97,8 @@ impl Store {
             offset,
             area: area.to_array().map(|part| part.round() as i16),
             moment: (moment / f64::from(self.moment_unit)).round() as i16,
-            lightness: (libm::log2(LARGEST * f64::from(self.area_unit) / cluster.weight) * WEIGHTS)
+            lightness: (libm::log(LARGEST * f64::from(self.area_unit) / cluster.weight)
+                * (WEIGHTS / LN_2))
                 .round() as u8,
         }
     }

@@ -4,7 +4,7 @@ import { before, test } from "node:test";
 import * as facade from "meshmark";
 import * as glue from "../meshmark/wasm/meshmark.js";
 import { readContract } from "./shape.mjs";
-import { contractFile, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { caught, contractFile, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 const contract = readContract(contractFile);
 
@@ -70,12 +70,3 @@ test("the comparison sees what is missing, undeclared and of another type", () =
     assert.equal(contract.differences("CarrierReading", wrong).length > 0, true);
   }
 });
-
-function caught(f) {
-  try {
-    f();
-  } catch (error) {
-    return error;
-  }
-  return assert.fail("nothing was thrown");
-}

@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import * as meshmark from "meshmark";
 import * as study from "../app/study-wasm/study.js";
 import { readContract } from "./shape.mjs";
-import { glbOf, repository } from "./support.mjs";
+import { caught, glbOf, repository } from "./support.mjs";
 
 const contract = readContract(fileURLToPath(new URL("src/wasm/study.d.ts", repository)));
 const HOSTS = 100;
@@ -84,12 +84,3 @@ test("what is no model and no mesh is refused with a code", () => {
     assert.equal(caught(wrong).code, "options.argument", String(wrong));
   }
 });
-
-function caught(f) {
-  try {
-    f();
-  } catch (error) {
-    return error;
-  }
-  return assert.fail("nothing was thrown");
-}

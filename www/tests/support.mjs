@@ -97,3 +97,13 @@ export async function assertNoNewErrors(host, marked) {
   const after = await validationErrors(marked);
   assert.deepEqual(after.filter((error) => !before.includes(error)), []);
 }
+
+/** What a function throws; it is wrong not to. */
+export function caught(f) {
+  try {
+    f();
+  } catch (error) {
+    return error;
+  }
+  return assert.fail("nothing was thrown");
+}

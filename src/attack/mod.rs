@@ -1,6 +1,7 @@
 //! What can happen to a model after it was marked: pure functions of a mesh and a seed. An attacker has no key.
 
 mod average;
+mod catalogue;
 mod crop;
 mod editing;
 mod flow;
@@ -18,6 +19,7 @@ mod subdivide;
 mod warp;
 
 pub use average::average;
+pub use catalogue::{Attack, CATALOGUE, Family, Step, step};
 pub use crop::crop;
 pub use flow::mean_curvature_flow;
 pub use mean_filter::mean_filter;

@@ -3,8 +3,8 @@
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::attack::{
-    average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample, simplify,
-    smooth, smooth_inside, sqrt3, taubin, warp,
+    CATALOGUE, average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample,
+    simplify, smooth, smooth_inside, sqrt3, step, taubin, warp,
 };
 use meshmark::geometry::{Distortion, Surface, diagonal};
 use meshmark::mesh::{Edges, Mesh, shapes};
@@ -374,5 +374,29 @@ fn attack_nothing_comes_of_nothing() {
         average(&[]),
     ] {
         assert_eq!(result, nothing);
+    }
+}
+
+/// Names are what the command line, the page and the tables' random numbers go by.
+#[wasm_bindgen_test(unsupported = test)]
+fn every_step_is_found_by_its_name() {
+    for attack in CATALOGUE {
+        for found in attack.steps() {
+            let name = found.to_string();
+            let same = step(&name).unwrap();
+            assert_eq!((same.attack.name, same.level), (attack.name, found.level));
+            let bare = name.trim_end_matches(attack.unit);
+            assert_eq!(step(bare).unwrap().to_string(), name);
+        }
+    }
+    for name in [
+        "",
+        "nois",
+        "noise",
+        "noise 0.2 %",
+        "reorder 1",
+        "noise 0.1 bits",
+    ] {
+        assert!(step(name).is_none(), "{name}");
     }
 }

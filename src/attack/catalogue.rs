@@ -2,8 +2,8 @@
 
 use super::{
     bilaplacian, catmull_clark, crop, loop_scheme, mean_curvature_flow, mean_filter, midpoint,
-    noise, quantize, remesh, reorder, resample, similarity, simplify, smooth, smooth_inside, sqrt3,
-    taubin, warp,
+    noise, quantize, remesh, reorder, resample, similarity, simplify, simplify_volume, smooth,
+    smooth_inside, sqrt3, taubin, warp,
 };
 use crate::mesh::Mesh;
 use serde::Serialize;
@@ -146,6 +146,13 @@ pub static CATALOGUE: &[Attack] = &{
             " %",
             &[10.0, 30.0, 50.0, 70.0, 90.0, 95.0, 97.5],
             |m, x, _| simplify(m, x / 100.0),
+        ),
+        attack(
+            "simplify Lindstrom-Turk",
+            Benchmark,
+            " %",
+            &[10.0, 30.0, 50.0, 70.0, 90.0, 95.0, 97.5],
+            |m, x, _| simplify_volume(m, x / 100.0),
         ),
         attack(
             "crop",

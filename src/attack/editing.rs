@@ -108,6 +108,16 @@ impl Editable {
             .any(|same| same[0] != vertex && same.len() != 2)
     }
 
+    /// Whether an edge has another number of faces than two, or two whose normals' angle has a cosine below this.
+    pub fn is_crease(&self, a: u32, b: u32, cosine: f64) -> bool {
+        let mut faces = self.faces_at(a).filter(|face| face.contains(&b));
+        let (Some(first), Some(second), None) = (faces.next(), faces.next(), faces.next()) else {
+            return true;
+        };
+        let (first, second) = (self.normal(first), self.normal(second));
+        first.dot(second) < cosine * first.length() * second.length()
+    }
+
     /// Makes one vertex of an edge's two, `kept` at the position `to`, if the surface stays what it is: the link condition
     /// (Dey, Edelsbrunner, Guha and Nekhayev 1999), no face turned over or gone thin, no component gone. Says whether it did.
     pub fn collapse(&mut self, kept: u32, lost: u32, to: DVec3) -> bool {

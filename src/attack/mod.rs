@@ -2,9 +2,11 @@
 
 mod average;
 mod catalogue;
+mod collapse;
 mod crop;
 mod editing;
 mod flow;
+mod lindstrom_turk;
 mod mean_filter;
 mod noise;
 mod optimize;
@@ -22,6 +24,7 @@ pub use average::average;
 pub use catalogue::{Attack, CATALOGUE, Family, Step, step};
 pub use crop::crop;
 pub use flow::mean_curvature_flow;
+pub use lindstrom_turk::simplify_volume;
 pub use mean_filter::mean_filter;
 pub use noise::noise;
 pub use optimize::optimize;

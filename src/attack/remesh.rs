@@ -53,7 +53,7 @@ fn collapse_short(editable: &mut Editable, shortest: f64, longest: f64) {
         if editable.apexes(a, b).is_empty() || editable.length(a, b) >= shortest {
             continue;
         }
-        let along = is_crease(editable, a, b);
+        let along = editable.is_crease(a, b, CREASE);
         // A vertex without creases goes to one with them; along a crease, a plain one to a corner.
         let (kept, lost, to) = match (place(editable, a), place(editable, b)) {
             (Place::Smooth, Place::Smooth) => (a, b, editable.at(a).midpoint(editable.at(b))),
@@ -76,7 +76,7 @@ fn even_valences(editable: &mut Editable) {
         let [c, d] = editable.apexes(a, b)[..] else {
             continue;
         };
-        if is_crease(editable, a, b) {
+        if editable.is_crease(a, b, CREASE) {
             continue;
         }
         let excess = |v: u32| {
@@ -115,16 +115,6 @@ fn relax(editable: &mut Editable, surface: &Surface) {
     editable.positions = positions;
 }
 
-/// Whether an edge has another number of faces than two, or two at an angle.
-fn is_crease(editable: &Editable, a: u32, b: u32) -> bool {
-    let mut faces = editable.faces_at(a).filter(|face| face.contains(&b));
-    let (Some(first), Some(second), None) = (faces.next(), faces.next(), faces.next()) else {
-        return true;
-    };
-    let (first, second) = (editable.normal(first), editable.normal(second));
-    first.dot(second) < CREASE * first.length() * second.length()
-}
-
 /// Where a vertex is.
 #[derive(PartialEq)]
 enum Place {
@@ -137,7 +127,7 @@ enum Place {
 
 fn place(editable: &Editable, vertex: u32) -> Place {
     let mut creases = editable.neighbours(vertex);
-    creases.retain(|&n| is_crease(editable, vertex, n));
+    creases.retain(|&n| editable.is_crease(vertex, n, CREASE));
     let along = |n: u32| (editable.at(n) - editable.at(vertex)).normalize_or_zero();
     match creases[..] {
         [] => Place::Smooth,

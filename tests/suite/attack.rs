@@ -4,7 +4,7 @@ use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::attack::{
     CATALOGUE, average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample,
-    simplify, smooth, smooth_inside, sqrt3, step, taubin, warp,
+    simplify, simplify_volume, smooth, smooth_inside, sqrt3, step, taubin, warp,
 };
 use meshmark::geometry::{Distortion, Surface, diagonal};
 use meshmark::mesh::{Edges, Mesh, shapes};
@@ -160,6 +160,56 @@ fn attack_subdivisions_have_their_counts() {
 fn attack_midpoint_keeps_the_surface() {
     let mesh = asteroid();
     assert!((volume(&midpoint(&mesh)) / volume(&mesh) - 1.0).abs() < 1e-12);
+}
+
+/// The benchmark counts edges, on open surfaces too.
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplifications_remove_so_many_edges() {
+    for mesh in [asteroid(), shapes::terrain(30)] {
+        let [_, before, _, _] = counts(&mesh);
+        for fraction in [0.1, 0.5, 0.9, 0.975] {
+            for simple in [simplify(&mesh, fraction), simplify_volume(&mesh, fraction)] {
+                let [_, after, _, _] = counts(&simple);
+                let most = ((1.0 - fraction) * before as f64).ceil() as usize;
+                // The last collapse may have taken three.
+                assert!((most - 2..=most).contains(&after), "{after} of {before}");
+            }
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_volume_preserves_it() {
+    let change = |mesh: &Mesh, simple: &Mesh| (volume(simple) / volume(mesh) - 1.0).abs();
+    for (name, mesh) in [
+        ("asteroid", asteroid()),
+        ("machined part", shapes::cad_part()),
+    ] {
+        for fraction in [0.5, 0.95] {
+            let simple = simplify_volume(&mesh, fraction);
+            assert_sound(name, &simple);
+            let (this, other) = (
+                change(&mesh, &simple),
+                change(&mesh, &simplify(&mesh, fraction)),
+            );
+            assert!(this < 1e-9, "{name}, {fraction}: {this}");
+            assert!(this < 1e-3 * other, "{name}: {this}, quadrics {other}");
+            assert!(hausdorff(&mesh, &simple) < 0.04, "{name}");
+            assert_eq!(simple, simplify_volume(&mesh, fraction), "deterministic");
+        }
+    }
+}
+
+/// A collapse takes nothing away within a straight border, and cuts corners last.
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_simplify_volume_keeps_borders_and_planes() {
+    let mut plane = shapes::terrain(20);
+    plane.positions.iter_mut().for_each(|p| p.z = 0.0);
+    let simple = simplify_volume(&plane, 0.9);
+    assert_sound("plane", &simple);
+    assert!(simple.positions.iter().all(|p| p.z.abs() < 1e-12));
+    let area = areas(&simple).sum::<f64>();
+    assert!((area - 1.0).abs() < 1e-9, "{area}");
 }
 
 /// On a flat, regular plane the smooth schemes reproduce the plane, and its square stays one.
@@ -368,6 +418,7 @@ fn attack_nothing_comes_of_nothing() {
         sqrt3(&nothing),
         catmull_clark(&nothing, 2),
         simplify(&nothing, 0.5),
+        simplify_volume(&nothing, 0.5),
         remesh(&nothing, 0.01),
         resample(&nothing, 0.01),
         warp(&nothing, 0.1, 0.001, 1),

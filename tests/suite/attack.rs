@@ -3,8 +3,9 @@
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::attack::{
-    CATALOGUE, average, catmull_clark, loop_scheme, midpoint, noise, quantize, remesh, resample,
-    simplify, simplify_volume, smooth, smooth_inside, sqrt3, step, taubin, warp,
+    CATALOGUE, average, catmull_clark, crop, loop_scheme, midpoint, noise, quantize, remesh,
+    reorder, resample, similarity, simplify, simplify_volume, smooth, smooth_inside, sqrt3, step,
+    taubin, warp,
 };
 use meshmark::geometry::{Distortion, Surface, diagonal};
 use meshmark::mesh::{Edges, Mesh, shapes};
@@ -86,31 +87,117 @@ fn border(mesh: &Mesh) -> Vec<[u64; 3]> {
     places
 }
 
+/// The benchmark's unit of length.
+fn mean_radius(mesh: &Mesh) -> f64 {
+    let count = mesh.positions.len() as f64;
+    let mean = mesh.positions.iter().sum::<DVec3>() / count;
+    mesh.positions.iter().map(|p| p.distance(mean)).sum::<f64>() / count
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn attack_noise_keeps_to_its_amplitude() {
     let mesh = asteroid();
-    let noisy = noise(&mesh, 0.003, 1);
-    let count = mesh.positions.len() as f64;
-    let mean = mesh.positions.iter().sum::<DVec3>() / count;
-    let size = mesh.positions.iter().map(|p| p.distance(mean)).sum::<f64>() / count;
-    let largest = mesh
-        .positions
-        .iter()
-        .zip(&noisy.positions)
-        .map(|(a, b)| (*a - *b).abs().max_element())
-        .fold(0.0, f64::max);
-    assert!((0.00299..=0.003).contains(&(largest / size)));
+    for amplitude in [0.0005, 0.001, 0.003, 0.005] {
+        let noisy = noise(&mesh, amplitude, 1);
+        let pairs = mesh.positions.iter().zip(&noisy.positions);
+        let components: Vec<f64> = pairs
+            .flat_map(|(a, b)| (*b - *a).to_array())
+            .map(|component| component / (amplitude * mean_radius(&mesh)))
+            .collect();
+        let largest = components.iter().fold(0.0, |max: f64, c| max.max(c.abs()));
+        assert!((0.999..=1.0 + 1e-9).contains(&largest), "{largest}");
+        // Uniform: the variance is a third.
+        let square = components.iter().map(|c| c * c).sum::<f64>() / components.len() as f64;
+        assert!((square - 1.0 / 3.0).abs() < 0.02, "{square}");
+    }
+    let terrain = shapes::terrain(20);
+    assert_eq!(border(&noise(&terrain, 0.01, 1)), border(&terrain));
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn attack_quantize_leaves_so_many_values() {
-    let mesh = quantize(&asteroid(), 7);
-    let low = mesh.positions.iter().map(|p| p.x).fold(f64::MAX, f64::min);
-    let high = mesh.positions.iter().map(|p| p.x).fold(f64::MIN, f64::max);
-    for p in &mesh.positions {
-        let step = (p.x - low) / (high - low) * 127.0;
-        assert!((step - step.round()).abs() < 1e-9);
+    let mesh = asteroid();
+    for bits in [7, 9] {
+        let quantized = quantize(&mesh, bits);
+        for axis in 0..3 {
+            let values = |mesh: &Mesh| -> Vec<f64> {
+                let mut values: Vec<f64> = mesh.positions.iter().map(|p| p[axis]).collect();
+                values.sort_by(f64::total_cmp);
+                values
+            };
+            let (before, mut after) = (values(&mesh), values(&quantized));
+            let step = (before[before.len() - 1] - before[0]) / f64::from(1 << bits);
+            assert_eq!(after[0], before[0]);
+            for value in &after {
+                let steps = (value - before[0]) / step;
+                assert!((steps - steps.round()).abs() < 1e-9);
+            }
+            after.dedup();
+            assert!(after.len() <= (1 << bits) + 1, "{}", after.len());
+        }
+        let largest = mesh.positions.iter().zip(&quantized.positions);
+        let largest = largest.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        let half_a_cell = 0.5 * diagonal(&mesh.positions) / f64::from(1 << bits);
+        assert!((0.8 * half_a_cell..=half_a_cell).contains(&largest));
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_similarity_keeps_the_shape() {
+    let mesh = asteroid();
+    for seed in 0..20 {
+        let moved = similarity(&mesh, seed);
+        let scale = mean_radius(&moved) / mean_radius(&mesh);
+        assert!((0.1..=10.0).contains(&scale), "{scale}");
+        assert!((volume(&moved) / volume(&mesh) / (scale * scale * scale) - 1.0).abs() < 1e-9);
+        for [a, b, c] in mesh.triangles.iter().copied() {
+            let sides = |mesh: &Mesh| {
+                let [a, b, c] = mesh.corners([a, b, c]);
+                DVec3::new(a.distance(b), b.distance(c), c.distance(a))
+            };
+            assert!(sides(&moved).distance(sides(&mesh) * scale) < 1e-9 * scale);
+        }
+        assert_eq!(moved.triangles, mesh.triangles);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_crop_removes_its_fraction() {
+    for mesh in [asteroid(), shapes::terrain(30)] {
+        for fraction in [0.1, 0.3, 0.5] {
+            let cropped = crop(&mesh, fraction, 3);
+            let kept = ((1.0 - fraction) * mesh.positions.len() as f64).round() as usize;
+            assert_eq!(cropped.positions.len(), kept);
+            let surface = Surface::new(&mesh);
+            let stays = |p: &DVec3| surface.nearest(*p).unwrap().distance < 1e-12;
+            assert!(cropped.positions.iter().all(stays));
+            assert!(Edges::new(&cropped).num_boundary() > 0, "not capped");
+            assert_ne!(cropped, crop(&mesh, fraction, 4), "another direction");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn attack_reorder_keeps_every_triangle() {
+    let mesh = asteroid();
+    let reordered = reorder(&mesh, 1);
+    let triangles = |mesh: &Mesh| {
+        let mut triangles: Vec<[[u64; 3]; 3]> = mesh
+            .triangles
+            .iter()
+            .map(|&t| mesh.corners(t).map(|p| p.to_array().map(f64::to_bits)))
+            .map(|mut corners| {
+                // Turned to begin with the least, which keeps the winding.
+                let least = (0..3).min_by_key(|&i| corners[i]).unwrap();
+                corners.rotate_left(least);
+                corners
+            })
+            .collect();
+        triangles.sort_unstable();
+        triangles
+    };
+    assert_ne!(reordered.positions, mesh.positions);
+    assert_eq!(triangles(&reordered), triangles(&mesh));
 }
 
 #[wasm_bindgen_test(unsupported = test)]

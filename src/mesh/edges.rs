@@ -70,21 +70,35 @@ impl Edges {
 
     /// Sets of faces that are joined by edges.
     pub fn num_components(&self) -> usize {
+        let labels = self.components();
+        labels.iter().max().map_or(0, |&last| last as usize + 1)
+    }
+
+    /// For each face the number of its component: those of the faces that are joined by edges, counted from the first face on.
+    pub fn components(&self) -> Vec<u32> {
         let mut parents: Vec<u32> = (0..self.num_faces as u32).collect();
-        let mut components = self.num_faces;
         for sides in self.edges() {
             for pair in sides.windows(2) {
                 let (a, b) = (
                     find(&mut parents, pair[0].face()),
                     find(&mut parents, pair[1].face()),
                 );
-                if a != b {
-                    parents[b as usize] = a;
-                    components -= 1;
-                }
+                // To the lower one, which so comes first below.
+                parents[a.max(b) as usize] = a.min(b);
             }
         }
-        components
+        let mut labels = vec![0; self.num_faces];
+        let mut next = 0;
+        for face in 0..self.num_faces as u32 {
+            let root = find(&mut parents, face);
+            if root == face {
+                labels[face as usize] = next;
+                next += 1;
+            } else {
+                labels[face as usize] = labels[root as usize];
+            }
+        }
+        labels
     }
 
     /// Which faces to turn over so that neighbours across two-faced edges agree, the majority of each patch keeping its

@@ -28,6 +28,40 @@ impl Mesh {
         }
     }
 
+    /// Several meshes as one, not welded.
+    pub fn joined(parts: impl IntoIterator<Item = Mesh>) -> Mesh {
+        let mut whole = Mesh::default();
+        for part in parts {
+            let first = whole.positions.len() as u32;
+            whole.positions.extend(part.positions);
+            let triangles = part.triangles.iter();
+            whole
+                .triangles
+                .extend(triangles.map(|triangle| triangle.map(|v| v + first)));
+        }
+        whole
+    }
+
+    /// Some of the triangles, in the order given, with those of the vertices that they need, in theirs.
+    pub fn part(&self, triangles: impl IntoIterator<Item = [u32; 3]>) -> Mesh {
+        let triangles: Vec<[u32; 3]> = triangles.into_iter().collect();
+        let mut names = vec![None; self.positions.len()];
+        let used = triangles.iter().flatten();
+        used.for_each(|&vertex| names[vertex as usize] = Some(0));
+        let mut positions = Vec::new();
+        for (name, position) in names.iter_mut().zip(&self.positions) {
+            if let Some(name) = name {
+                *name = positions.len() as u32;
+                positions.push(*position);
+            }
+        }
+        let renamed = |v: u32| names[v as usize].unwrap_or(0);
+        Mesh {
+            triangles: triangles.iter().map(|t| t.map(renamed)).collect(),
+            positions,
+        }
+    }
+
     /// The area of all triangles, in squared scene units.
     pub fn area(&self) -> f64 {
         let double = |&triangle: &[u32; 3]| {

@@ -1,7 +1,7 @@
 //! Many parts.
 
 use super::parts::{
-    cuboid, cuboid_face, divided, joined, lathe, mirrored, placed, reversed, sheet, welded,
+    cuboid, cuboid_face, divided, lathe, mirrored, placed, reversed, sheet, welded,
 };
 use super::revolution::{capsule, relief_sphere, torus};
 use crate::mesh::Mesh;
@@ -26,7 +26,7 @@ pub fn seven_shapes() -> Mesh {
         capsule(14, 18),
         prism,
     ];
-    joined((0u32..).zip(&shapes).map(|(number, shape)| {
+    Mesh::joined((0u32..).zip(&shapes).map(|(number, shape)| {
         let place = DVec3::new(3.0 * f64::from(number), 0.0, 0.0);
         placed(shape, DAffine3::from_translation(place))
     }))
@@ -85,7 +85,7 @@ pub fn game_asset() -> Mesh {
         at(-0.9, -0.45, 1.2, DMat3::from_rotation_y(-0.1)),
     ));
     parts.push(dish(at(-0.6, 0.3, 1.45, DMat3::from_rotation_y(0.6))));
-    joined(parts)
+    Mesh::joined(parts)
 }
 
 /// Hull, deck, cabin with its window frames, seat and mast.
@@ -96,7 +96,7 @@ fn body() -> Vec<Mesh> {
         DVec3::new(p.x, p.y * nose, p.z + 0.1)
     };
     // Open below.
-    let hull = joined([0, 1, 3, 4, 5].map(|face| cuboid_face(hull_size, [24, 14, 6], face)));
+    let hull = Mesh::joined([0, 1, 3, 4, 5].map(|face| cuboid_face(hull_size, [24, 14, 6], face)));
     let hull = welded(&hull);
     let cabin = shell(24, 12, 0.03, |u, v| {
         let azimuth = TAU * (0.06 + 0.88 * u);
@@ -144,7 +144,7 @@ fn shell(rows: u32, columns: u32, thickness: f64, position: impl Fn(f64, f64) ->
     let inner = sheet(rows, columns, |u, v| {
         position(u, v) - thickness * normal(u, v)
     });
-    joined([sheet(rows, columns, &position), reversed(&inner)])
+    Mesh::joined([sheet(rows, columns, &position), reversed(&inner)])
 }
 
 /// A tube, open at both ends.
@@ -159,7 +159,7 @@ fn pipe(radius: f64, length: f64, place: DAffine3) -> Mesh {
 /// A box without a floor.
 fn crate_box(size: DVec3, place: DAffine3) -> Mesh {
     let faces = [0, 1, 3, 4, 5].map(|face| cuboid_face(size, [5, 4, 3], face));
-    placed(&welded(&joined(faces)), place)
+    placed(&welded(&Mesh::joined(faces)), place)
 }
 
 fn lamp(place: DAffine3) -> Mesh {
@@ -176,7 +176,7 @@ fn dish(place: DAffine3) -> Mesh {
         &outer,
         DAffine3::from_translation(DVec3::new(0.0, 0.0, 0.02)),
     );
-    placed(&joined([outer, reversed(&inner)]), place)
+    placed(&Mesh::joined([outer, reversed(&inner)]), place)
 }
 
 /// A tyre, a rim that is open behind, and a hub; about the z axis, 0.8 wide.

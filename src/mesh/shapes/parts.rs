@@ -85,10 +85,10 @@ pub(super) fn divided(corners: &[(f64, f64)], steps: u32) -> Vec<(f64, f64)> {
     profile
 }
 
-/// The surface of a box about the origin, V = `2 (ab + bc + ca) + 2` for `cells` of a, b and c.
-pub(super) fn cuboid(size: DVec3, cells: [u32; 3]) -> Mesh {
+/// The surface of a box about the origin, of a size along x, y and z, V = `2 (ab + bc + ca) + 2` for `cells` of a, b and c.
+pub fn cuboid(size: DVec3, cells: [u32; 3]) -> Mesh {
     let faces = (0..6).map(|face| cuboid_face(size, cells, face));
-    welded(&joined(faces))
+    welded(&Mesh::joined(faces))
 }
 
 /// A face of a box: 0 to 2 look to -x, -y, -z, 3 to 5 to +x, +y, +z.
@@ -105,20 +105,6 @@ pub(super) fn cuboid_face(size: DVec3, cells: [u32; 3], face: usize) -> Mesh {
         unit[second] = v;
         (unit - 0.5) * size
     })
-}
-
-/// Several meshes as one, not welded.
-pub(super) fn joined(parts: impl IntoIterator<Item = Mesh>) -> Mesh {
-    let mut whole = Mesh::default();
-    for part in parts {
-        let first = whole.positions.len() as u32;
-        whole.positions.extend(part.positions);
-        let triangles = part.triangles.iter();
-        whole
-            .triangles
-            .extend(triangles.map(|triangle| triangle.map(|v| v + first)));
-    }
-    whole
 }
 
 /// One vertex for all that have the same position to the bit, without triangles that lose a corner by that.

@@ -1,9 +1,10 @@
 //! The attacks by name, each with the levels that tables show: one list for the lab, the command line, the tests and the page.
 
 use super::{
-    bilaplacian, catmull_clark, crop, loop_scheme, mean_curvature_flow, mean_filter, midpoint,
-    noise, quantize, remesh, reorder, resample, similarity, simplify, simplify_volume, smooth,
-    smooth_inside, sqrt3, taubin, warp,
+    bake, bend, bilaplacian, catmull_clark, convert_units, crop, delaunay, into_scene, loop_scheme,
+    mean_curvature_flow, mean_filter, midpoint, mirror, noise, quantize, remesh, reorder, resample,
+    similarity, simplify, simplify_volume, smooth, smooth_inside, soup, split, sqrt3, swap_axes,
+    take_out, taubin, warp, weld,
 };
 use crate::mesh::Mesh;
 use serde::Serialize;
@@ -201,6 +202,37 @@ pub static CATALOGUE: &[Attack] = &{
             &[0.8],
             |m, x, _| resample(m, x / 100.0),
         ),
+        attack("flipped edges", Retessellation, "", &[], |m, _, _| {
+            delaunay(m)
+        }),
+        attack("triangle soup", Wild, "", &[], |m, _, _| soup(m)),
+        attack("merge by distance", Wild, " %", &[0.01], |m, x, _| {
+            weld(m, x / 100.0)
+        }),
+        attack("baked transform", Wild, "", &[], |m, _, seed| bake(m, seed)),
+        attack("swapped axes", Wild, "", &[], |m, _, _| swap_axes(m)),
+        attack(
+            "inches to metres at",
+            Wild,
+            " diagonals",
+            &[100.0, 1000.0],
+            |m, x, seed| convert_units(m, x, seed),
+        ),
+        attack("mirrored copy", Wild, "", &[], |m, _, _| mirror(m)),
+        attack("split by material", Wild, "", &[], |m, _, seed| {
+            split(m, seed)
+        }),
+        attack("one part taken out", Wild, "", &[], |m, _, _| take_out(m)),
+        attack(
+            "in a scene",
+            Wild,
+            " x as large",
+            &[2.0, 5.0],
+            |m, x, seed| into_scene(m, x, seed),
+        ),
+        attack("posed", Wild, " degrees", &[10.0, 30.0], |m, x, _| {
+            bend(m, x)
+        }),
         attack(
             "non-uniform scale",
             Wild,
@@ -210,6 +242,13 @@ pub static CATALOGUE: &[Attack] = &{
                 let scale = glam::DVec3::new(1.0 + x / 100.0, 1.0, 1.0 - x / 200.0);
                 m.with_positions(m.positions.iter().map(|p| *p * scale).collect())
             },
+        ),
+        attack(
+            "crop 30 % + simplify 50 % + quantize 10 bits",
+            Deliberate,
+            "",
+            &[],
+            |m, _, seed| quantize(&simplify(&crop(m, 0.3, seed), 0.5), 10),
         ),
         attack(
             "warp",

@@ -31,3 +31,4 @@ mod solid;
 mod study;
 mod support;
 mod watermark;
+mod wild;

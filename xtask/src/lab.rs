@@ -3,17 +3,22 @@
 use std::process::Command;
 
 use crate::process::{Result, run};
-use crate::project;
 use crate::steps::Steps;
+use crate::{project, real};
 
-/// Starts the lab, which does all of it.
+/// Starts the lab, which does all of it but installing other people's programs: with `--real` it is told where they are.
 pub fn lab(steps: &mut Steps, arguments: &[&str]) -> Result<()> {
-    steps.run("lab", || {
-        let mut command = Command::new("cargo");
-        command
-            .args(["run", "--release", "--package", "meshmark-lab", "--"])
-            .args(arguments)
-            .current_dir(project::root());
-        run(&mut command, "see the error above")
-    })
+    let mut command = Command::new("cargo");
+    command
+        .args(["run", "--release", "--package", "meshmark-lab", "--"])
+        .current_dir(project::root());
+    for argument in arguments {
+        command.arg(argument);
+        if *argument == "--real" {
+            let with_blender = arguments.contains(&"--blender");
+            steps.run("other people's programs", || real::set_up(with_blender))?;
+            command.arg(project::real_tools());
+        }
+    }
+    steps.run("lab", || run(&mut command, "see the error above"))
 }

@@ -10,6 +10,8 @@ mod npm;
 mod page;
 mod process;
 mod project;
+mod python;
+mod real;
 mod serve;
 mod stamp;
 mod steps;
@@ -29,6 +31,7 @@ cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the nex
 cargo xtask test                  every check there is
 cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs
 cargo xtask lab [--quick]         docs/ROBUSTNESS.md: what marks survive; more with --help
+cargo xtask lab --real            what they survive in other people's programs; Blender too with --blender
 cargo xtask study                 docs/STUDY.md: the seed paper's study; more with --help
 
 Each installs what it needs and is missing.";

@@ -43,7 +43,7 @@ pub struct Nearest {
 }
 
 impl<'a> Surface<'a> {
-    /// Sorts the triangles of a mesh.
+    /// Sorts the triangles of a mesh. Those without area are left out: where they are, others are.
     pub fn new(mesh: &'a Mesh) -> Surface<'a> {
         let centres: Vec<DVec3> = mesh
             .triangles
@@ -52,11 +52,18 @@ impl<'a> Surface<'a> {
             .collect();
         let mut surface = Surface {
             mesh,
-            order: (0..mesh.triangles.len() as u32).collect(),
+            order: (0u32..)
+                .zip(&mesh.triangles)
+                .filter(|(_, triangle)| {
+                    let [a, b, c] = mesh.corners(**triangle);
+                    (b - a).cross(c - a) != DVec3::ZERO
+                })
+                .map(|(number, _)| number)
+                .collect(),
             nodes: Vec::new(),
         };
-        if !centres.is_empty() {
-            surface.grow(0..centres.len(), &centres);
+        if !surface.order.is_empty() {
+            surface.grow(0..surface.order.len(), &centres);
         }
         surface
     }
@@ -92,7 +99,7 @@ impl<'a> Surface<'a> {
         self.grow(range.start + half..range.end, centres);
     }
 
-    /// The point nearest to `from`; `None` for a mesh without triangles.
+    /// The point nearest to `from`; `None` for a mesh without area.
     pub fn nearest(&self, from: DVec3) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;
         let mut open = Vec::with_capacity(64);

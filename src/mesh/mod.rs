@@ -9,6 +9,7 @@ pub use admissible::{Admissible, Orbit};
 pub use edges::{Edges, Pair, Rings, Winding};
 
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// A triangle mesh with V vertices and F triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,6 +41,30 @@ impl Mesh {
                 .extend(triangles.map(|triangle| triangle.map(|v| v + first)));
         }
         whole
+    }
+
+    /// One vertex for all that have the same position to the bit, without triangles that lose a corner by that. O(V log V).
+    pub fn welded(&self) -> Mesh {
+        let mut names = BTreeMap::new();
+        let mut positions = Vec::new();
+        let name_of = |position: &DVec3| {
+            // Adding 0 makes one number of the two zeros.
+            let bits = (*position + 0.0).to_array().map(f64::to_bits);
+            *names.entry(bits).or_insert_with(|| {
+                positions.push(*position);
+                positions.len() as u32 - 1
+            })
+        };
+        let renamed: Vec<u32> = self.positions.iter().map(name_of).collect();
+        let triangles = self
+            .triangles
+            .iter()
+            .map(|triangle| triangle.map(|v| renamed[v as usize]))
+            .filter(|&[a, b, c]| a != b && b != c && c != a);
+        Mesh {
+            triangles: triangles.collect(),
+            positions,
+        }
     }
 
     /// Some of the triangles, in the order given, with those of the vertices that they need, in theirs.

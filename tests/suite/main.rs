@@ -23,6 +23,7 @@ mod models;
 mod note;
 mod osveta;
 mod payload;
+mod quality;
 mod ring;
 mod robustness;
 mod scene;

@@ -1,8 +1,6 @@
 //! Many parts.
 
-use super::parts::{
-    cuboid, cuboid_face, divided, lathe, mirrored, placed, reversed, sheet, welded,
-};
+use super::parts::{cuboid, cuboid_face, divided, lathe, mirrored, placed, reversed, sheet};
 use super::revolution::{capsule, relief_sphere, torus};
 use crate::mesh::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
@@ -97,7 +95,7 @@ fn body() -> Vec<Mesh> {
     };
     // Open below.
     let hull = Mesh::joined([0, 1, 3, 4, 5].map(|face| cuboid_face(hull_size, [24, 14, 6], face)));
-    let hull = welded(&hull);
+    let hull = hull.welded();
     let cabin = shell(24, 12, 0.03, |u, v| {
         let azimuth = TAU * (0.06 + 0.88 * u);
         let radius = 0.62 - 0.25 * v * v;
@@ -159,7 +157,7 @@ fn pipe(radius: f64, length: f64, place: DAffine3) -> Mesh {
 /// A box without a floor.
 fn crate_box(size: DVec3, place: DAffine3) -> Mesh {
     let faces = [0, 1, 3, 4, 5].map(|face| cuboid_face(size, [5, 4, 3], face));
-    placed(&welded(&Mesh::joined(faces)), place)
+    placed(&Mesh::joined(faces).welded(), place)
 }
 
 fn lamp(place: DAffine3) -> Mesh {

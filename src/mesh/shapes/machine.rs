@@ -1,6 +1,6 @@
 //! A machined part.
 
-use super::parts::{band, reversed, sheet, welded};
+use super::parts::{band, reversed, sheet};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -58,7 +58,7 @@ pub fn cad_part() -> Mesh {
             }
         }
     }
-    welded(&Mesh::joined(parts))
+    Mesh::joined(parts).welded()
 }
 
 /// A square of side 1 of the plate. What lies on the same height of two tiles' common side is equal to the bit: its

@@ -3,7 +3,6 @@
 use crate::mesh::Mesh;
 use crate::random::Random;
 use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// A grid of `rows` times `columns` quads over the unit square, V = `(rows + 1) (columns + 1)`. Faces the way of the cross
@@ -60,7 +59,7 @@ pub(super) fn band(rows: u32, columns: u32, position: impl Fn(u32, u32) -> DVec3
 /// The surface that a profile of radii and heights sweeps about the z axis; faces outwards where the profile goes down. An end
 /// of radius 0 is a pole, any other end a border.
 pub(super) fn lathe(profile: &[(f64, f64)], sectors: u32) -> Mesh {
-    welded(&band(profile.len() as u32 - 1, sectors, |i, j| {
+    band(profile.len() as u32 - 1, sectors, |i, j| {
         let (radius, height) = profile[i as usize];
         let azimuth = TAU * f64::from(j) / f64::from(sectors);
         DVec3::new(
@@ -68,7 +67,8 @@ pub(super) fn lathe(profile: &[(f64, f64)], sectors: u32) -> Mesh {
             radius * libm::sin(azimuth),
             height,
         )
-    }))
+    })
+    .welded()
 }
 
 /// A profile with each of its pieces divided into `steps`.
@@ -88,7 +88,7 @@ pub(super) fn divided(corners: &[(f64, f64)], steps: u32) -> Vec<(f64, f64)> {
 /// The surface of a box about the origin, of a size along x, y and z, V = `2 (ab + bc + ca) + 2` for `cells` of a, b and c.
 pub fn cuboid(size: DVec3, cells: [u32; 3]) -> Mesh {
     let faces = (0..6).map(|face| cuboid_face(size, cells, face));
-    welded(&Mesh::joined(faces))
+    Mesh::joined(faces).welded()
 }
 
 /// A face of a box: 0 to 2 look to -x, -y, -z, 3 to 5 to +x, +y, +z.
@@ -105,30 +105,6 @@ pub(super) fn cuboid_face(size: DVec3, cells: [u32; 3], face: usize) -> Mesh {
         unit[second] = v;
         (unit - 0.5) * size
     })
-}
-
-/// One vertex for all that have the same position to the bit, without triangles that lose a corner by that.
-pub(super) fn welded(mesh: &Mesh) -> Mesh {
-    let mut names = BTreeMap::new();
-    let mut positions = Vec::new();
-    let name_of = |position: &DVec3| {
-        // Adding 0 makes one number of the two zeros.
-        let bits = (*position + 0.0).to_array().map(f64::to_bits);
-        *names.entry(bits).or_insert_with(|| {
-            positions.push(*position);
-            positions.len() as u32 - 1
-        })
-    };
-    let renamed: Vec<u32> = mesh.positions.iter().map(name_of).collect();
-    let triangles = mesh
-        .triangles
-        .iter()
-        .map(|triangle| triangle.map(|v| renamed[v as usize]))
-        .filter(|&[a, b, c]| a != b && b != c && c != a);
-    Mesh {
-        triangles: triangles.collect(),
-        positions,
-    }
 }
 
 /// The mesh elsewhere.

@@ -232,7 +232,7 @@ fn attack_bend_turns_one_half() {
 /// Whatever is done, a reader takes what comes of it, and the same seed gives the same.
 #[wasm_bindgen_test(unsupported = test)]
 fn attack_catalogue_gives_files_that_can_be_read() {
-    let mesh = shapes::asteroid(20, 30);
+    let mesh = shapes::asteroid(10, 14);
     for attack in CATALOGUE {
         let level = attack.steps().last().unwrap();
         let attacked = level.apply(&mesh, 1);

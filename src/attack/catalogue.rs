@@ -216,20 +216,14 @@ pub static CATALOGUE: &[Attack] = &{
             Wild,
             " diagonals",
             &[100.0, 1000.0],
-            |m, x, seed| convert_units(m, x, seed),
+            convert_units,
         ),
         attack("mirrored copy", Wild, "", &[], |m, _, _| mirror(m)),
         attack("split by material", Wild, "", &[], |m, _, seed| {
             split(m, seed)
         }),
         attack("one part taken out", Wild, "", &[], |m, _, _| take_out(m)),
-        attack(
-            "in a scene",
-            Wild,
-            " x as large",
-            &[2.0, 5.0],
-            |m, x, seed| into_scene(m, x, seed),
-        ),
+        attack("in a scene", Wild, " x as large", &[2.0, 5.0], into_scene),
         attack("posed", Wild, " degrees", &[10.0, 30.0], |m, x, _| {
             bend(m, x)
         }),

@@ -15,6 +15,7 @@ mod detection;
 mod document;
 mod errors;
 mod evidence;
+mod floors;
 mod geometry;
 mod golden;
 mod key;

@@ -160,6 +160,7 @@ fn mesh_shapes_without_axes_are_what_they_say() {
     assert_eq!(kind(&shapes::vase(40, 20)), (801, 1, 20, 1));
     assert_eq!(kind(&shapes::relief_sphere(20, 30)), (602, 1, 0, 2));
     assert_eq!(kind(&shapes::capsule(20, 30)), (602, 1, 0, 2));
+    assert_eq!(kind(&shapes::leaf(20, 30)), (602, 1, 0, 2));
     assert_eq!(kind(&shapes::icosphere(3)), (642, 1, 0, 2));
     let radii = shapes::icosphere(3)
         .positions

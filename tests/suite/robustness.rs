@@ -1,10 +1,10 @@
-//! Floors of robustness on small generated meshes: what once survived must survive.
+//! What survives natively and in wasm on a regular shape. Every attack's floors are in `floors.rs`.
 
-use crate::support::fixtures::{key, marked, payload};
+use crate::support::fixtures::{key, marked};
 use glam::DVec3;
-use meshmark::attack::{crop, noise, quantize, reorder, similarity, smooth};
+use meshmark::attack::{quantize, reorder, similarity};
 use meshmark::document::Document;
-use meshmark::mesh::{Mesh, shapes};
+use meshmark::mesh::Mesh;
 use meshmark::scene::{Scene, to_glb};
 use meshmark::{Evidence, Verdict, extract};
 use std::f64::consts::TAU;
@@ -78,89 +78,4 @@ fn tube() -> Mesh {
         positions: (0..count).map(position).collect(),
         triangles: (0..count).flat_map(quad).collect(),
     }
-}
-
-/// Every attack with the largest ln p at which each mesh must be found.
-fn check(name: &str, mesh: &Mesh, floors: [f64; 9]) {
-    let marked = marked_mesh(mesh);
-    let attacked = [
-        ("none", marked.clone()),
-        ("reorder", reorder(&marked, 11)),
-        ("similarity", similarity(&marked, 12)),
-        ("quantize 14", quantize(&marked, 14)),
-        ("quantize 12", quantize(&marked, 12)),
-        ("crop 10 %", crop(&marked, 0.1, 13)),
-        ("crop 30 %", crop(&marked, 0.3, 14)),
-        ("crop 50 %", crop(&marked, 0.5, 15)),
-        (
-            "crop 30 %, similarity, reorder, quantize 14",
-            quantize(&reorder(&similarity(&crop(&marked, 0.3, 16), 17), 18), 14),
-        ),
-    ];
-    hold(name, attacked.into_iter().zip(floors));
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn robustness_of_a_torus_knot() {
-    check(
-        "torus knot",
-        &shapes::torus_knot(160, 24),
-        [
-            -575.0, -575.0, -575.0, -571.0, -518.0, -448.0, -279.0, -190.0, -285.0,
-        ],
-    );
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn robustness_of_an_asteroid() {
-    check(
-        "asteroid",
-        &shapes::asteroid(40, 60),
-        [
-            -216.0, -216.0, -216.0, -213.0, -184.0, -158.0, -84.0, -28.0, -82.0,
-        ],
-    );
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn robustness_of_a_terrain() {
-    check(
-        "terrain",
-        &shapes::terrain(60),
-        [
-            -731.0, -731.0, -731.0, -723.0, -615.0, -609.0, -454.0, -276.0, -419.0,
-        ],
-    );
-}
-
-/// Reads every suspect, and names all that are not found, or with a ln p above the floor.
-fn hold(name: &str, suspects: impl Iterator<Item = ((&'static str, Mesh), f64)>) {
-    let below = suspects.filter_map(|((attack, suspect), floor)| {
-        let answer = extract(&Evidence::measure(&suspect), &key(1));
-        let holds = answer.verdict == Verdict::Found
-            && answer.number == Some(payload().number())
-            && answer.ln_p <= floor;
-        (!holds).then(|| format!("{attack}: ln p {:.0}, the floor is {floor}", answer.ln_p))
-    });
-    let below: Vec<String> = below.collect();
-    assert!(below.is_empty(), "{name}: {}", below.join("; "));
-}
-
-/// What leaves nothing of the rings, and the shape as it was.
-#[wasm_bindgen_test(unsupported = test)]
-fn robustness_of_a_shape() {
-    let marked = marked_mesh(&shapes::asteroid(40, 60));
-    let attacked = [
-        (("noise 0.3 %", noise(&marked, 0.003, 51)), -63.0),
-        (("quantize 9", quantize(&marked, 9)), -89.0),
-        (("smooth 10", smooth(&marked, 0.1, 10)), -65.0),
-        (
-            (
-                "smooth 40, similarity",
-                similarity(&smooth(&marked, 0.1, 40), 52),
-            ),
-            -89.0,
-        ),
-    ];
-    hold("asteroid", attacked.into_iter());
 }

@@ -11,6 +11,6 @@ mod revolution;
 
 pub use assembly::{game_asset, seven_shapes};
 pub use machine::cad_part;
-pub use natural::{asteroid, low_poly, terrain, torus_knot};
+pub use natural::{asteroid, leaf, low_poly, terrain, torus_knot};
 pub use parts::cuboid;
 pub use revolution::{capsule, icosphere, relief_sphere, torus, vase};

@@ -72,3 +72,12 @@ pub fn terrain(cells: u32) -> Mesh {
     };
     sheet(cells, cells, |x, y| DVec3::new(x, y, height(x, y)))
 }
+
+/// A leaf: closed, 2.6 long, 0.03 thick, and curled, V = `rings * sectors + 2` vertices.
+pub fn leaf(rings: u32, sectors: u32) -> Mesh {
+    globe(rings, sectors, |d| {
+        let (x, y) = (1.3 * d.x, (0.8 + 0.2 * d.x) * d.y);
+        let curl = 0.2 * x * x - 0.15 * y * y * (1.0 + x) + 0.02 * libm::sin(9.0 * x + 5.0 * y);
+        DVec3::new(x, y, curl + 0.015 * d.z)
+    })
+}

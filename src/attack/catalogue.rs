@@ -2,9 +2,9 @@
 
 use super::{
     bake, bend, bilaplacian, catmull_clark, convert_units, crop, delaunay, into_scene, loop_scheme,
-    mean_curvature_flow, mean_filter, midpoint, mirror, noise, quantize, remesh, reorder, resample,
-    similarity, simplify, simplify_volume, smooth, smooth_inside, soup, split, sqrt3, swap_axes,
-    take_out, taubin, warp, weld,
+    mean_curvature_flow, mean_filter, midpoint, mirror, noise, quantize, quantize_evenly, remesh,
+    reorder, resample, similarity, simplify, simplify_volume, smooth, smooth_inside, soup, split,
+    sqrt3, swap_axes, take_out, taubin, warp, weld,
 };
 use crate::mesh::Mesh;
 use serde::Serialize;
@@ -135,7 +135,7 @@ pub static CATALOGUE: &[Attack] = &{
             "quantize",
             Benchmark,
             " bits",
-            &[14.0, 12.0, 11.0, 10.0, 9.0, 8.0, 7.0],
+            &[11.0, 10.0, 9.0, 8.0, 7.0],
             |m, x, _| quantize(m, x as u32),
         ),
         attack("midpoint", Benchmark, "", &[], |m, _, _| midpoint(m)),
@@ -228,6 +228,13 @@ pub static CATALOGUE: &[Attack] = &{
             bend(m, x)
         }),
         attack(
+            "glTF quantize",
+            Wild,
+            " bits",
+            &[14.0, 12.0, 10.0, 8.0],
+            |m, x, _| quantize_evenly(m, x as u32),
+        ),
+        attack(
             "non-uniform scale",
             Wild,
             " %",
@@ -236,13 +243,6 @@ pub static CATALOGUE: &[Attack] = &{
                 let scale = glam::DVec3::new(1.0 + x / 100.0, 1.0, 1.0 - x / 200.0);
                 m.with_positions(m.positions.iter().map(|p| *p * scale).collect())
             },
-        ),
-        attack(
-            "crop 30 % + simplify 50 % + quantize 10 bits",
-            Deliberate,
-            "",
-            &[],
-            |m, _, seed| quantize(&simplify(&crop(m, 0.3, seed), 0.5), 10),
         ),
         attack(
             "warp",

@@ -39,7 +39,7 @@ pub use mean_filter::mean_filter;
 pub use noise::noise;
 pub use optimize::optimize;
 pub use parts::{split, take_out};
-pub use quantize::quantize;
+pub use quantize::{quantize, quantize_evenly};
 pub use remesh::remesh;
 pub use reorder::reorder;
 pub use resample::resample;

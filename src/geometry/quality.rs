@@ -4,7 +4,7 @@ use super::msdm::distortion;
 use super::{Surface, diagonal, outward, registered};
 use crate::mesh::Mesh;
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Points of a surface, and at most as many of its vertices, whose distance from the other is taken.
 const SAMPLES: usize = 4096;
@@ -18,7 +18,7 @@ const SAME: f64 = 1e-9;
 const MOVED: f64 = 0.5;
 
 /// How an attacked mesh differs from what it was. All are `None` where one of them has no area.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Quality {
     /// Root mean square distance of the surfaces, as a fraction of the reference's diagonal.

@@ -2,7 +2,7 @@
 
 use super::extract::Reader;
 use super::{Extraction, Verdict};
-use crate::attack::{crop, noise, quantize, simplify, smooth};
+use crate::attack::{crop, noise, quantize_evenly, simplify, smooth};
 use crate::bits::Payload;
 use crate::carrier::{Reading, ring, solid};
 use crate::detection::LN_P_FOUND;
@@ -42,7 +42,7 @@ type Attack = fn(&Mesh) -> Mesh;
 const ATTACKS: [(&str, Attack); 7] = [
     ("none", Mesh::clone),
     ("noise", |mesh| noise(mesh, 0.001, 1)),
-    ("quantize", |mesh| quantize(mesh, 11)),
+    ("quantize", |mesh| quantize_evenly(mesh, 11)),
     ("smooth", |mesh| smooth(mesh, 0.1, 10)),
     ("simplify-30", |mesh| simplify(mesh, 0.3)),
     ("simplify-70", |mesh| simplify(mesh, 0.7)),

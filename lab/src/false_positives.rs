@@ -2,12 +2,14 @@
 
 use crate::case::Case;
 use crate::models::Model;
+use crate::plot::{Axis, curves};
 use crate::seed::Seed;
-use meshmark::attack::{noise, quantize, simplify, smooth};
+use meshmark::attack::{noise, quantize_evenly, simplify, smooth};
 use meshmark::carrier::{ring, solid};
 use meshmark::mesh::Mesh;
 use meshmark::{Evidence, Strength, extract};
 use rayon::prelude::*;
+use std::f64::consts::LN_10;
 use std::fmt::Write;
 
 /// A part of the table: whose evidence, what is measured of it, and how many of all keys are tested against that.
@@ -80,21 +82,24 @@ const PARTS: [Part; 3] = [
 const DECADES: u32 = 6;
 
 /// The tail of ln p over tests with keys of their own, `tests` of them in the first part. `write` gets the table again and again,
-/// each time with more of them.
+/// each time with more of them,
+/// and with the plot of the first part.
 pub fn table(
     models: &[Model],
     seed: &Seed,
     tests: u64,
-    write: &dyn Fn(&str) -> Result<(), String>,
+    write: &dyn Fn(&str, &str) -> Result<(), String>,
 ) -> Result<(), String> {
     let mut text = format!(
         "# False positives\n\n\
          `cargo xtask lab --false-positives {tests}` wrote this. With `--seed {}` it runs again.\n\n\
          Keys that marked nothing, each tested once, evenly against the evidence of unmarked models and of models that another key \
          marked and that were then attacked. The bound p holds if no more tests than their number times p get below it, but \
-         for chance: *at most* is what independent tests whose bound is exact would exceed in one of a hundred tables.\n",
+         for chance: *at most* is what independent tests whose bound is exact would exceed in one of a hundred tables.\n\n\
+         ![share of keys below each bound](robustness/false-positives.svg)\n",
         seed.number
     );
+    let mut plot = String::new();
     for part in PARTS {
         let suspects = suspects(models, &part, seed)?;
         let (evidence, names): (Vec<Evidence>, Vec<String>) = suspects
@@ -125,7 +130,10 @@ pub fn table(
                 ln_ps[number].extend(found);
             }
             section = document(&part, &names, &ln_ps);
-            write(&format!("{text}{section}"))?;
+            if part.from_tables {
+                plot = tail(&names, &ln_ps);
+            }
+            write(&format!("{text}{section}"), &plot)?;
             eprintln!("{}: {} of {}", part.title, round + 1, part.rounds);
         }
         text.push_str(&section);
@@ -138,7 +146,7 @@ fn suspects(models: &[Model], part: &Part, seed: &Seed) -> Result<Vec<(String, M
     let cases: Vec<Case> = models
         .par_iter()
         .filter(|model| part.models.contains(&&*model.name))
-        .map(|model| Case::new(model, ("strong", Strength::STRONG), seed))
+        .map(|model| Case::new(model, ("strong", Strength::STRONG), 0, seed))
         .collect::<Result<_, _>>()?;
     let name = |case: &Case, what: &str| format!("{}, {what}", case.model.name);
     let unmarked = cases
@@ -155,12 +163,57 @@ fn suspects(models: &[Model], part: &Part, seed: &Seed) -> Result<Vec<(String, M
                 noise(mesh, 0.001, seed.number(&case.purpose, 9)),
             ),
             1 => ("Laplacian 10", smooth(mesh, 0.1, 10)),
-            2 => ("quantize 10 bits", quantize(mesh, 10)),
+            2 => ("quantize 10 bits", quantize_evenly(mesh, 10)),
             _ => ("simplify 30 %", simplify(mesh, 0.3)),
         };
         (name(case, &format!("marked, {attack}")), mesh)
     });
     Ok(unmarked.chain(attacked).collect())
+}
+
+/// How many tests have a bound of that many decades or less, of those of unmarked models or of the others; and how many there are.
+fn below(names: &[String], ln_ps: &[Vec<f64>], is_unmarked: bool, decade: u32) -> (usize, usize) {
+    let limit = -f64::from(decade) * LN_10;
+    let lists = names.iter().zip(ln_ps);
+    let lists = lists.filter(|(name, _)| name.ends_with("unmarked") == is_unmarked);
+    lists.fold((0, 0), |(below, all), (_, ln_ps)| {
+        let here = ln_ps.iter().filter(|&&ln_p| ln_p <= limit).count();
+        (below + here, all + ln_ps.len())
+    })
+}
+
+/// The share of tests below each bound, by decades of both, for as long as there are any.
+fn tail(names: &[String], ln_ps: &[Vec<f64>]) -> String {
+    let of = |is_unmarked: bool| {
+        (1..=DECADES)
+            .map(|decade| (decade, below(names, ln_ps, is_unmarked, decade)))
+            .take_while(|(_, (below, _))| *below > 0)
+            .map(|(decade, (below, all))| {
+                (f64::from(decade), libm::log10(all as f64 / below as f64))
+            })
+            .collect()
+    };
+    let far = f64::from(DECADES);
+    let axis = |name, ends| Axis {
+        name,
+        ends,
+        marks: (0..=DECADES)
+            .map(|decade| (f64::from(decade), format!("1e-{decade}")))
+            .collect(),
+    };
+    curves(
+        "Keys that marked nothing",
+        [
+            &axis("the bound p", (0.0, far)),
+            &axis("share of keys below it", (far, 0.0)),
+        ],
+        &[
+            "the bound",
+            "unmarked",
+            "marked by another key and attacked",
+        ],
+        &[vec![(0.0, 0.0), (far, far)], of(true), of(false)],
+    )
 }
 
 fn document(part: &Part, names: &[String], ln_ps: &[Vec<f64>]) -> String {
@@ -177,17 +230,8 @@ fn document(part: &Part, names: &[String], ln_ps: &[Vec<f64>]) -> String {
         part.title
     );
     for decade in 1..=DECADES {
-        let limit = -f64::from(decade) * std::f64::consts::LN_10;
         let bound = (0..decade).fold(tests as f64, |bound, _| bound / 10.0);
-        let below = |is_unmarked: bool| {
-            let lists = names.iter().zip(ln_ps);
-            let lists = lists.filter(|(name, _)| name.ends_with("unmarked") == is_unmarked);
-            lists
-                .flat_map(|(_, ln_ps)| ln_ps)
-                .filter(|&&ln_p| ln_p <= limit)
-                .count()
-        };
-        let (u, m) = (below(true), below(false));
+        let [u, m] = [true, false].map(|is_unmarked| below(names, ln_ps, is_unmarked, decade).0);
         let _ = writeln!(
             text,
             "| 1e-{decade} | {bound:.1} | {} | {} | {u} | {m} |",
@@ -198,7 +242,7 @@ fn document(part: &Part, names: &[String], ln_ps: &[Vec<f64>]) -> String {
     text.push_str("\n| evidence | tests | below 1e-2 | smallest ln p |\n|---|--:|--:|--:|\n");
     for (name, ln_ps) in names.iter().zip(ln_ps) {
         let least = ln_ps.iter().copied().fold(0.0, f64::min);
-        let limit = -2.0 * std::f64::consts::LN_10;
+        let limit = -2.0 * LN_10;
         let below = ln_ps.iter().filter(|&&ln_p| ln_p <= limit).count();
         let _ = writeln!(text, "| {name} | {} | {below} | {least:.1} |", ln_ps.len());
     }

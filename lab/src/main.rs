@@ -2,20 +2,30 @@
 //!
 //! Everything random comes from one seed, which the system draws and the table states; `--seed` runs a table again.
 
-#[allow(dead_code)] // not in a table yet
 mod baseline;
 mod case;
+mod cell;
 mod false_positives;
+mod found;
 mod grid;
-mod measure;
+mod journal;
 mod models;
+mod plot;
+mod published;
+mod real;
+mod removal;
 mod report;
+mod run;
 mod seed;
 mod study;
 
 use clap::Parser;
+use journal::{Header, Journal};
 use meshmark::Strength;
+use models::Size;
+use run::Scope;
 use seed::Seed;
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -23,9 +33,21 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "cargo xtask lab")]
 struct Arguments {
-    /// Fewer rows, models and strengths.
+    /// Fewer rows and models: minutes.
     #[arg(long)]
     quick: bool,
+    /// Every model at every strength, three times: a night.
+    #[arg(long, conflicts_with = "quick")]
+    full: bool,
+    /// Also programs that people have, from the folder that `cargo xtask lab --real` installed them in.
+    #[arg(long, value_name = "FOLDER")]
+    real: Option<PathBuf>,
+    /// Blender too.
+    #[arg(long, requires = "real")]
+    blender: bool,
+    /// Goes on with a run that was interrupted.
+    #[arg(long, conflicts_with_all = ["seed", "false_positives", "study"])]
+    resume: bool,
     /// A folder of .glb and .obj files. Default: ../shared/models, where it exists.
     #[arg(long)]
     models: Option<PathBuf>,
@@ -33,12 +55,12 @@ struct Arguments {
     #[arg(long)]
     seed: Option<u64>,
     /// Instead of the grid: so many tests with keys that marked nothing; writes docs/FALSE_POSITIVES.md.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real"])]
     false_positives: Option<u64>,
     /// Instead of the grid: the seed paper's study; writes docs/STUDY.md, and its plots in docs/study.
-    #[arg(long, conflicts_with = "false_positives")]
+    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives"])]
     study: bool,
-    /// Another file to write.
+    /// Another file to write; plots are in a folder beside it.
     #[arg(long)]
     output: Option<PathBuf>,
 }
@@ -52,6 +74,12 @@ const STRENGTHS: [(&str, Strength); 3] = [
 
 /// Keys that the study's errors are averaged over.
 const STUDY_KEYS: u32 = 2;
+
+/// Copies of each model in a full run, as many as the LIRIS benchmark has of what is random.
+const COPIES: u32 = 3;
+
+/// The folder of plots, beside the documents.
+const PLOTS: &str = "robustness";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -69,8 +97,8 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<PathBuf, String> {
     let seed = match arguments.seed {
-        Some(number) => Seed::new(number),
-        None => Seed::new(getrandom::u64().map_err(|error| error.to_string())?),
+        Some(number) => number,
+        None => getrandom::u64().map_err(|error| error.to_string())?,
     };
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",
@@ -84,40 +112,122 @@ fn run(arguments: &Arguments) -> Result<PathBuf, String> {
         .unwrap_or_else(|| root.join("docs").join(name));
     let folder = arguments.models.as_deref();
     if arguments.study {
-        study::write(&models::of_study(folder)?, &seed, STUDY_KEYS, &path)?;
-        return Ok(path);
-    }
-    let (models, unread) = models::all(folder)?;
-    let write = |text: &str| {
-        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
-    };
-    if let Some(tests) = arguments.false_positives {
-        false_positives::table(&models, &seed, tests, &write)?;
-        return Ok(path);
-    }
-    let models: Vec<_> = models
-        .into_iter()
-        .filter(|model| model.is_quick || !arguments.quick)
-        .collect();
-    let mut rows = grid::rows();
-    rows.retain(|row| row.is_quick || !arguments.quick);
-    let strengths = if arguments.quick {
-        &STRENGTHS[1..]
+        let models = models::of_study(folder)?;
+        study::write(&models, &Seed::new(seed), STUDY_KEYS, &path)?;
+    } else if let Some(tests) = arguments.false_positives {
+        let (models, _) = models::all(folder)?;
+        let write =
+            |text: &str, plot: &str| write_with_plot(&path, text, "false-positives.svg", plot);
+        false_positives::table(&models, &Seed::new(seed), tests, &write)?;
     } else {
-        &STRENGTHS
-    };
-    let results = measure::all(&models, &rows, strengths, &seed);
-    write(&report::table(
-        &rows,
-        &results,
-        &unread,
-        &seed,
-        arguments.quick,
-    ))?;
+        robustness(arguments, seed, &root.join("target"), &path)?;
+    }
     Ok(path)
 }
 
+/// Runs the grid, or the rest of it.
+fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> Result<(), String> {
+    let (models, unread) = models::all(arguments.models.as_deref())?;
+    let scope = scope(arguments, models, target);
+    let said = said(arguments);
+    let program = program()?;
+    let header = |seed| Header {
+        seed,
+        arguments: said.clone(),
+        program: program.clone(),
+    };
+    let file = target.join("lab-journal.jsonl");
+    let (journal, seed) = if arguments.resume {
+        Journal::resume(&file, header)?
+    } else {
+        (Journal::begin(&file, header(seed))?, seed)
+    };
+    run::run(&scope, &Seed::new(seed), &journal)?;
+    let results = journal.results();
+    let origin = report::Origin {
+        arguments: &said
+            .iter()
+            .map(|word| format!(" {word}"))
+            .collect::<String>(),
+        seed,
+        unread: &unread,
+    };
+    let text = report::document(&origin, &scope, &results);
+    write_with_plot(
+        path,
+        &text,
+        "found.svg",
+        &found::plot(&scope.rows, &results),
+    )
+}
+
+fn scope(arguments: &Arguments, mut models: Vec<models::Model>, target: &Path) -> Scope {
+    let mut rows = grid::rows();
+    if arguments.quick {
+        rows.retain(grid::Row::is_quick);
+    }
+    let size = match (arguments.quick, arguments.full) {
+        (true, _) => Size::Quick,
+        (_, true) => Size::Full,
+        _ => Size::Usual,
+    };
+    models.retain(|model| model.size <= size);
+    if let Some(folder) = &arguments.real {
+        let tools = real::tools(folder, arguments.blender);
+        let scratch = target.join("lab-scratch");
+        rows.extend(
+            tools
+                .into_iter()
+                .map(|tool| grid::Row::tool(tool, scratch.clone())),
+        );
+    }
+    Scope {
+        models,
+        rows,
+        means: if arguments.quick {
+            Vec::new()
+        } else {
+            removal::means()
+        },
+        strengths: if arguments.full {
+            &STRENGTHS
+        } else {
+            &STRENGTHS[1..]
+        },
+        copies: if arguments.full { COPIES } else { 1 },
+    }
+}
+
+/// The arguments that say what is run, as `cargo xtask lab` takes them.
+fn said(arguments: &Arguments) -> Vec<String> {
+    let flags = [
+        ("--quick", arguments.quick),
+        ("--full", arguments.full),
+        ("--real", arguments.real.is_some()),
+        ("--blender", arguments.blender),
+        ("--models FOLDER", arguments.models.is_some()),
+    ];
+    let flags = flags.into_iter().filter(|(_, is_set)| *is_set);
+    flags.map(|(flag, _)| flag.to_owned()).collect()
+}
+
+/// SHA-256 of the program that runs.
+fn program() -> Result<String, String> {
+    let bytes = std::env::current_exe().and_then(std::fs::read);
+    let digest = Sha256::digest(bytes.map_err(|error| error.to_string())?);
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn write_with_plot(path: &Path, text: &str, name: &str, plot: &str) -> Result<(), String> {
+    let said = |error: std::io::Error| format!("{}: {error}", path.display());
+    let folder = path.with_file_name(PLOTS);
+    std::fs::create_dir_all(&folder).map_err(said)?;
+    std::fs::write(folder.join(name), plot).map_err(said)?;
+    std::fs::write(path, text).map_err(said)
+}
+
 #[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 mod tests {
     use super::*;
     use meshmark::mesh::shapes;
@@ -141,32 +251,88 @@ mod tests {
         assert_ne!(bytes(1, "a"), bytes(2, "a"));
     }
 
-    /// A small grid from end to end: what is there is found, what is not is not, and a run repeats.
-    #[test]
-    fn a_small_grid_repeats() {
+    fn small_scope() -> Scope {
         let model = models::Model {
             name: "asteroid".to_owned(),
             class: models::Class::Plain,
             bytes: to_glb(&shapes::asteroid(40, 60)),
-            is_quick: true,
+            size: Size::Quick,
         };
         let mut rows = grid::rows();
         rows.retain(|row| ["unmarked", "none", "average with the original"].contains(&&*row.name));
-        let run = || {
-            let seed = Seed::new(5);
-            let outcomes =
-                measure::all(std::slice::from_ref(&model), &rows, &STRENGTHS[2..], &seed);
-            let decoded: Vec<bool> = outcomes[0]
-                .cells
-                .iter()
-                .map(|cell| cell.is_decoded)
-                .collect();
-            assert_eq!(decoded[..2], [false, true]);
-            report::table(&rows, &outcomes, &[], &seed, false)
+        Scope {
+            models: vec![model],
+            rows,
+            means: Vec::new(),
+            strengths: &STRENGTHS[2..],
+            copies: 1,
+        }
+    }
+
+    fn header(seed: u64) -> Header {
+        Header {
+            seed,
+            arguments: Vec::new(),
+            program: String::new(),
+        }
+    }
+
+    fn text(scope: &Scope, journal: &Journal) -> String {
+        let origin = report::Origin {
+            arguments: "",
+            seed: 5,
+            unread: &[],
         };
-        let text = run();
-        assert!(text.contains("| none | 1/1 | 1/1 |"), "{text}");
-        assert!(text.contains("--seed 5"));
-        assert_eq!(text, run());
+        report::document(&origin, scope, &journal.results())
+    }
+
+    /// A small grid from end to end: what is there is found, what is not is not, and a run repeats. One that was cut short goes on,
+    /// with the same result.
+    #[test]
+    fn a_small_grid_repeats_and_goes_on() {
+        let scope = small_scope();
+        let folder = std::env::temp_dir().join(format!("meshmark-lab-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("journal");
+        let journal = Journal::begin(&path, header(5)).unwrap();
+        run::run(&scope, &Seed::new(5), &journal).unwrap();
+        let whole = text(&scope, &journal);
+        assert!(whole.contains("| none | 1/1 | 1/1 |"), "{whole}");
+        assert!(whole.contains("| unmarked | 0/1 | 0/1 |"), "{whole}");
+        assert!(whole.contains("--seed 5"));
+        drop(journal);
+
+        let lines = std::fs::read_to_string(&path).unwrap();
+        let cut = lines.len() - 20;
+        std::fs::write(&path, &lines[..cut]).unwrap();
+        let (journal, seed) = Journal::resume(&path, header).unwrap();
+        assert_eq!(journal.results().cells.len(), 2);
+        run::run(&scope, &Seed::new(seed), &journal).unwrap();
+        assert_eq!(text(&scope, &journal), whole);
+        drop(journal);
+
+        let other = |seed| Header {
+            program: "another".to_owned(),
+            ..header(seed)
+        };
+        assert!(Journal::resume(&path, other).is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    /// Each row of the short grid is one of the grid.
+    #[test]
+    fn the_short_grid_is_part_of_the_grid() {
+        let rows = grid::rows();
+        let quick = rows.iter().filter(|row| row.is_quick()).count();
+        assert_eq!(quick, grid::QUICK.len());
+    }
+
+    /// The published figures stand beside rows of the same name.
+    #[test]
+    fn published_rows_are_rows_of_the_grid() {
+        let rows = grid::rows();
+        for (name, _) in published::BENCHMARK {
+            assert!(rows.iter().any(|row| row.name == name), "{name}");
+        }
     }
 }

@@ -24,12 +24,20 @@ impl Class {
     ];
 }
 
+/// The smallest grid that a model is in.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+pub enum Size {
+    Quick,
+    Usual,
+    Full,
+}
+
 pub struct Model {
     pub name: String,
     pub class: Class,
     /// A `.glb`.
     pub bytes: Vec<u8>,
-    pub is_quick: bool,
+    pub size: Size,
 }
 
 /// Vertices without which a file is no model to mark.
@@ -41,6 +49,7 @@ const MANY_PARTS: usize = 5;
 const SCENES: [&str; 3] = ["chr_knight.glb", "ShapeCollection.glb", "DenseSphere.glb"];
 const SYMMETRIC: [&str; 1] = ["DenseSphere"];
 const QUICK: [&str; 3] = ["rocker-arm", "cow", "chr_knight"];
+const USUAL: [&str; 3] = ["stanford-bunny", "fandisk", "ShapeCollection"];
 
 /// Every model, files first, and what files could not be read.
 pub fn all(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
@@ -61,7 +70,7 @@ pub fn of_study(folder: Option<&Path>) -> Result<Vec<Model>, String> {
         name: name.to_owned(),
         class: Class::Plain,
         bytes: to_glb(&mesh),
-        is_quick: true,
+        size: Size::Quick,
     }));
     Ok(models)
 }
@@ -96,33 +105,33 @@ fn from_files(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String
 
 fn generated() -> impl Iterator<Item = Model> {
     use Class::{Game, Plain, Symmetric};
+    use Size::{Full, Quick, Usual};
     let shapes = [
-        ("asteroid", Plain, shapes::asteroid(60, 90), true),
-        ("torus knot", Plain, shapes::torus_knot(240, 32), false),
-        ("terrain", Plain, shapes::terrain(80), false),
-        ("machined part", Plain, shapes::cad_part(), true),
-        ("torus", Symmetric, shapes::torus(120, 48), true),
-        ("vase", Symmetric, shapes::vase(60, 80), false),
+        ("asteroid", Plain, shapes::asteroid(60, 90), Quick),
+        ("torus knot", Plain, shapes::torus_knot(240, 32), Full),
+        ("terrain", Plain, shapes::terrain(80), Usual),
+        ("leaf", Plain, shapes::leaf(70, 90), Usual),
+        ("machined part", Plain, shapes::cad_part(), Quick),
+        ("torus", Symmetric, shapes::torus(120, 48), Quick),
+        ("vase", Symmetric, shapes::vase(60, 80), Usual),
         (
             "sphere with relief",
             Symmetric,
             shapes::relief_sphere(60, 90),
-            false,
+            Full,
         ),
-        ("capsule", Symmetric, shapes::capsule(60, 80), false),
-        ("icosphere", Symmetric, shapes::icosphere(4), false),
-        ("rover", Game, shapes::game_asset(), true),
-        ("seven shapes", Game, shapes::seven_shapes(), false),
-        ("creature", Game, shapes::low_poly(), false),
+        ("capsule", Symmetric, shapes::capsule(60, 80), Full),
+        ("icosphere", Symmetric, shapes::icosphere(4), Full),
+        ("rover", Game, shapes::game_asset(), Quick),
+        ("seven shapes", Game, shapes::seven_shapes(), Full),
+        ("creature", Game, shapes::low_poly(), Full),
     ];
-    shapes
-        .into_iter()
-        .map(|(name, class, mesh, is_quick)| Model {
-            name: name.to_owned(),
-            class,
-            bytes: to_glb(&mesh),
-            is_quick,
-        })
+    shapes.into_iter().map(|(name, class, mesh, size)| Model {
+        name: name.to_owned(),
+        class,
+        bytes: to_glb(&mesh),
+        size,
+    })
 }
 
 fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
@@ -154,10 +163,15 @@ fn read(path: &Path) -> Result<Option<Model>, String> {
         (_, true) => Class::Game,
         _ => Class::Plain,
     };
+    let size = match &*name {
+        name if QUICK.contains(&name) => Size::Quick,
+        name if USUAL.contains(&name) => Size::Usual,
+        _ => Size::Full,
+    };
     Ok((mesh.positions.len() >= FEWEST_VERTICES).then(|| Model {
         class,
         bytes,
-        is_quick: QUICK.contains(&&*name),
+        size,
         name: name.into_owned(),
     }))
 }

@@ -2,7 +2,6 @@
 
 mod layers;
 mod measure;
-mod plot;
 mod report;
 mod verdict;
 

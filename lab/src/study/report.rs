@@ -2,8 +2,8 @@
 
 use super::layers::{Layers, ORDERS};
 use super::measure::{Outcome, Read, Smoothed};
-use super::plot::{Panel, Row, bars, grid, panels};
 use super::verdict::{counts, find, statements};
+use crate::plot::{Panel, Row, bars, grid, panels};
 use crate::report::median;
 use crate::seed::Seed;
 use meshmark::carrier::osveta::Ranking;

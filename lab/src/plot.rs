@@ -155,6 +155,58 @@ pub fn grid(title: &str, columns: &[&str], rows: &[Row]) -> String {
     svg.end()
 }
 
+/// An axis: its name, its ends, and the places that are marked.
+pub struct Axis<'a> {
+    pub name: &'a str,
+    pub ends: (f64, f64),
+    pub marks: Vec<(f64, String)>,
+}
+
+/// Lines through points, one of each series, cut off at the axes' ends; the first series is dashed, as what the others are held against.
+pub fn curves(
+    title: &str,
+    [x, y]: [&Axis; 2],
+    series: &[&str],
+    lines: &[Vec<(f64, f64)>],
+) -> String {
+    const INNER: (f64, f64) = (520.0, 240.0);
+    const LEFT: f64 = 60.0;
+    const TOP: f64 = 62.0;
+    let along = |axis: &Axis, value: f64| {
+        ((value - axis.ends.0) / (axis.ends.1 - axis.ends.0)).clamp(0.0, 1.0)
+    };
+    let place = |(a, b): (f64, f64)| {
+        (
+            LEFT + INNER.0 * along(x, a),
+            TOP + INNER.1 * (1.0 - along(y, b)),
+        )
+    };
+    let mut svg = Svg::new(LEFT + INNER.0 + 30.0, TOP + INNER.1 + 50.0, title);
+    svg.legend(series, 10.0, 42.0);
+    for (value, name) in &y.marks {
+        let (left, height) = place((x.ends.0, *value));
+        svg.rule(left, left + INNER.0, height, "rule");
+        svg.text(left - 6.0, height + 4.0, "end", "small", name);
+    }
+    for (value, name) in &x.marks {
+        let (left, height) = place((*value, y.ends.0));
+        svg.text(left, height + 15.0, "middle", "small", name);
+    }
+    let middle = LEFT + INNER.0 / 2.0;
+    svg.text(
+        middle,
+        TOP + INNER.1 + 36.0,
+        "middle",
+        "",
+        &format!("{} against {}", y.name, x.name),
+    );
+    for (number, line) in lines.iter().enumerate() {
+        let points: Vec<(f64, f64)> = line.iter().map(|&point| place(point)).collect();
+        svg.curve(number, &points);
+    }
+    svg.end()
+}
+
 /// A number without needless zeros.
 fn number_of(value: f64) -> String {
     let text = format!("{value:.2}");
@@ -215,6 +267,23 @@ impl Svg {
             );
         }
         self.0.push_str("</g>\n");
+    }
+
+    fn curve(&mut self, series: usize, points: &[(f64, f64)]) {
+        let list: Vec<String> = points
+            .iter()
+            .map(|(x, y)| format!("{x:.1},{y:.1}"))
+            .collect();
+        let dashed = if series == 0 {
+            " stroke-dasharray=\"5 4\""
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            self.0,
+            "<g class=\"s{series}\"><polyline class=\"line\"{dashed} points=\"{}\"/></g>",
+            list.join(" ")
+        );
     }
 
     fn bar(&mut self, series: usize, x: f64, y: f64, width: f64, height: f64) {
@@ -305,6 +374,20 @@ mod tests {
             .collect();
         assert!((heights[0] - heights[1] - 95.0).abs() < 0.11, "{heights:?}");
         assert!((heights[2] - heights[3]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn curves_end_at_their_axes() {
+        let axis = |name| Axis {
+            name,
+            ends: (0.0, 10.0),
+            marks: vec![(5.0, "five".to_owned())],
+        };
+        let line = vec![(-3.0, 0.0), (5.0, 20.0)];
+        let svg = curves("title", [&axis("x"), &axis("y")], &["a"], &[line]);
+        check(&svg);
+        assert!(svg.contains("points=\"60.0,302.0 320.0,62.0\""), "{svg}");
+        assert!(svg.contains("y against x"));
     }
 
     #[test]

@@ -58,6 +58,50 @@ impl Drop for Folder {
 const ADA: &str = "--owner Ada --passphrase-file secret.txt";
 
 #[test]
+fn attacks_are_listed_and_made_by_their_names() {
+    let folder = Folder::new("attack");
+    let (code, list, _) = folder.run("attacks");
+    assert_eq!(code, 0);
+    let noise = list
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|a| a["name"] == "noise");
+    assert_eq!(noise.unwrap()["steps"][1], "noise 0.1 %");
+
+    let attack = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+        let output = command.args(words).current_dir(&folder.0).output().unwrap();
+        let report = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
+        (output.status.code(), report)
+    };
+    let steps = [
+        "--step",
+        "simplify 50",
+        "--step",
+        "noise 0.1 %",
+        "--seed",
+        "7",
+    ];
+    let words = [&["attack", "model.glb", "attacked.glb"], &steps[..]].concat();
+    let (code, report): (_, Value) = attack(&words);
+    assert_eq!(code, Some(0));
+    assert_eq!(report["steps"][0], "simplify 50 %");
+    assert_eq!(report["seed"], 7);
+    let rms = report["quality"]["rms_rel"].as_f64().unwrap();
+    assert!((1e-5..1e-2).contains(&rms), "{rms}");
+    let (_, inspected, _) = folder.run("inspect attacked.glb");
+    assert_eq!(inspected["vertices"], report["vertices"]);
+    let first = fs::read(folder.path("attacked.glb")).unwrap();
+    attack(&words);
+    assert_eq!(fs::read(folder.path("attacked.glb")).unwrap(), first);
+
+    let (code, _) = attack(&["attack", "model.glb", "x.glb", "--step", "noise 0.2"]);
+    assert_eq!(code, Some(2));
+    assert!(!folder.path("x.glb").exists());
+}
+
+#[test]
 fn cli_embeds_and_extracts() {
     let here = Folder::new("roundtrip");
     let (code, report, _) = here.run(&format!("embed model.glb marked.glb {ADA} --tag ADA-1"));

@@ -2,8 +2,8 @@
 
 use crate::baseline;
 use crate::case::Case;
-use crate::grid::{Kind, Row, Suspect, chain};
-use meshmark::attack::similarity;
+use crate::grid::{Kind, Row, Suspect};
+use meshmark::attack::{chain, similarity};
 use meshmark::geometry::Quality;
 use meshmark::mesh::Mesh;
 use meshmark::scene::to_glb;

@@ -3,7 +3,7 @@
 
 use crate::case::{Case, gathered};
 use crate::real::Tool;
-use meshmark::attack::{CATALOGUE, Family, Step, average, step, warp};
+use meshmark::attack::{CATALOGUE, Family, Step, average, chain, step, warp};
 use meshmark::mesh::Mesh;
 use std::path::PathBuf;
 
@@ -69,12 +69,6 @@ pub const QUICK: [&str; 20] = [
     "second and third mark",
     "average of two buyers' copies",
 ];
-
-/// Attacks one after another, each with a seed of its own.
-pub fn chain(mesh: &Mesh, steps: &[Step], seed: u64) -> Mesh {
-    let apply = |mesh, (step, number): (&Step, u64)| step.apply(&mesh, seed.wrapping_add(number));
-    steps.iter().zip(0..).fold(mesh.clone(), apply)
-}
 
 impl Row {
     fn chain(kind: Kind, steps: Vec<Step>) -> Row {

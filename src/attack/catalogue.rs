@@ -69,6 +69,12 @@ impl fmt::Display for Step {
     }
 }
 
+/// Steps one after another, each with a seed of its own: `seed`, `seed + 1`, and so on.
+pub fn chain(mesh: &Mesh, steps: &[Step], seed: u64) -> Mesh {
+    let apply = |mesh, (step, number): (&Step, u64)| step.apply(&mesh, seed.wrapping_add(number));
+    steps.iter().zip(0..).fold(mesh.clone(), apply)
+}
+
 /// A step by its name: an attack's, and behind it one of its levels, with or without the unit. `None` if there is none such: levels
 /// are those of the catalogue, which have been tried.
 pub fn step(name: &str) -> Option<Step> {

@@ -29,7 +29,7 @@ mod weld;
 
 pub use average::average;
 pub use bend::bend;
-pub use catalogue::{Attack, CATALOGUE, Family, Step, step};
+pub use catalogue::{Attack, CATALOGUE, Family, Step, chain, step};
 pub use crop::crop;
 pub use export::{bake, convert_units, mirror, swap_axes};
 pub use flip::delaunay;

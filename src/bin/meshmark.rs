@@ -3,9 +3,12 @@
 //! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input.
 
 use clap::{Args, Parser, Subcommand};
+use meshmark::attack::{Attack, CATALOGUE, Step, chain, step};
 use meshmark::detection::{LN_P_FOUND, union};
 use meshmark::document::{Document, DocumentError};
-use meshmark::scene::Scene;
+use meshmark::geometry::Quality;
+use meshmark::mesh::Mesh;
+use meshmark::scene::{Scene, to_glb};
 use meshmark::study::{Preparation, study};
 use meshmark::{
     Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage,
@@ -92,6 +95,21 @@ enum Command {
         #[command(subcommand)]
         command: NoteCommand,
     },
+    /// Attack a model as the robustness tables do, and measure what that cost it
+    Attack {
+        /// .glb or .gltf
+        input: PathBuf,
+        /// Where the attacked copy goes: a .glb with the geometry alone
+        output: PathBuf,
+        /// An attack at one of its levels, as `meshmark attacks` names it; more than one are made one after another
+        #[arg(long = "step", value_name = "ATTACK", required = true, value_parser = attack_step)]
+        steps: Vec<Step>,
+        /// What is random is drawn with
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+    /// List every attack and its levels
+    Attacks,
     /// Describe a model and what it could hold
     Inspect {
         /// .glb or .gltf
@@ -262,6 +280,34 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             let code = exit_code(reading.verdict);
             Ok((report(&reading, clock)?, code))
         }
+        Command::Attack {
+            input,
+            output,
+            steps,
+            seed,
+        } => {
+            let mesh = gather(&input)?;
+            let attacked = chain(&mesh, &steps, seed);
+            store(&output, &to_glb(&attacked))?;
+            let cost = json!({
+                "steps": steps.iter().map(Step::to_string).collect::<Vec<_>>(),
+                "seed": seed,
+                "vertices": attacked.positions.len(),
+                "triangles": attacked.triangles.len(),
+                "quality": Quality::between(&mesh, &attacked),
+            });
+            Ok((report(&cost, clock)?, FOUND))
+        }
+        Command::Attacks => {
+            let list = |attack: &'static Attack| {
+                json!({
+                    "name": attack.name,
+                    "family": attack.family,
+                    "steps": attack.steps().map(|step| step.to_string()).collect::<Vec<_>>(),
+                })
+            };
+            Ok((CATALOGUE.iter().map(list).collect(), FOUND))
+        }
         Command::Inspect { input } => {
             let (model, files) = open(&input)?;
             Ok((report(&inspect(&model, &files)?, clock)?, FOUND))
@@ -272,14 +318,18 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             keys,
             seed,
         } => {
-            let (model, files) = open(&input)?;
-            let document = Document::read(&model, &files).map_err(Error::from)?;
-            let mesh = Scene::gather(&document).map_err(Error::from)?.mesh;
-            let study =
-                study(&preparation.apply(&mesh), seed, keys, &mut clock).map_err(Error::from)?;
+            let mesh = preparation.apply(&gather(&input)?);
+            let study = study(&mesh, seed, keys, &mut clock).map_err(Error::from)?;
             Ok((report(&study, clock)?, FOUND))
         }
     }
+}
+
+/// The mesh of a model, as it is seen by whoever checks it.
+fn gather(input: &Path) -> Result<Mesh, Failure> {
+    let (model, files) = open(input)?;
+    let document = Document::read(&model, &files).map_err(Error::from)?;
+    Ok(Scene::gather(&document).map_err(Error::from)?.mesh)
 }
 
 fn judge(extraction: &Extraction, clock: Clock) -> Result<(Value, u8), Failure> {
@@ -323,6 +373,10 @@ fn snake_case(value: Value) -> Value {
         Value::Array(items) => items.into_iter().map(snake_case).collect(),
         other => other,
     }
+}
+
+fn attack_step(name: &str) -> Result<Step, String> {
+    step(name).ok_or_else(|| "there is no such attack; `meshmark attacks` lists them".to_owned())
 }
 
 fn carrier(name: &str) -> Result<Carrier, String> {

@@ -6,7 +6,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use crate::support::fixtures::{key, marked, payload};
-use meshmark::attack::{CATALOGUE, Step, step};
+use meshmark::attack::{CATALOGUE, Step, chain, step};
 use meshmark::document::Document;
 use meshmark::mesh::{Mesh, shapes};
 use meshmark::scene::{Scene, to_glb};
@@ -56,9 +56,8 @@ fn hold(name: &str, mesh: &Mesh) {
             if floor == Some(None) {
                 return None;
             }
-            let suspect = (steps.iter().zip(11..))
-                .fold(marked.clone(), |mesh, (step, seed)| step.apply(&mesh, seed));
-            let evidence = measure(&to_glb(&suspect), &Files::new(), &mut ignore).unwrap();
+            let suspect = to_glb(&chain(&marked, &steps, 11));
+            let evidence = measure(&suspect, &Files::new(), &mut ignore).unwrap();
             let answer = extract(&evidence, &key(1));
             let is_read =
                 answer.verdict == Verdict::Found && answer.number == Some(payload().number());

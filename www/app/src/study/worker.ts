@@ -1,21 +1,12 @@
 /** The worker behind the study: it loads the study's module with the first question. */
 import load, * as study from "../../study-wasm/study.js";
-import type { Answer, Question, Reply } from "./engine";
+import { answerBy } from "../answerer";
+import type { Answer, Question } from "../asker";
+import type { Questions } from "./engine";
 
-const loaded = (load as () => Promise<unknown>)();
+answerBy((load as () => Promise<unknown>)(), answer);
 
-self.addEventListener("message", async ({ data }: MessageEvent<Question>) => {
-  try {
-    await loaded;
-    const since = performance.now();
-    const result = answer(data);
-    reply({ kind: "answer", result, ms: performance.now() - since });
-  } catch (error) {
-    reply({ kind: "error", error: isPlain(error) ? error : { code: "internal", message: String(error), path: null } });
-  }
-});
-
-function answer(question: Question): Answer {
+function answer(question: Question<Questions>, onProgress: (fraction: number) => void): Answer<Questions> {
   switch (question.method) {
     case "parameters":
       return study.parameters();
@@ -30,15 +21,6 @@ function answer(question: Question): Answer {
     case "hosts":
       return study.hosts(...question.args);
     case "errors":
-      return study.errors(...question.args, (_, fraction) => reply({ kind: "progress", fraction }));
+      return study.errors(...question.args, (_, fraction) => onProgress(fraction));
   }
-}
-
-function reply(message: Reply): void {
-  self.postMessage(message);
-}
-
-/** What the module throws is plain; anything else has stopped it. */
-function isPlain(error: unknown): error is study.MeshmarkErrorObject {
-  return !(error instanceof Error);
 }

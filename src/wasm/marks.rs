@@ -1,6 +1,7 @@
 //! Marking and checking: what the package is made of.
 
-use super::{Listener, argument, encoded, files_from, set, thrown};
+use super::listener::Listener;
+use super::{argument, encoded, files_from, set, thrown};
 use crate::watermark::{self, Error, Strength};
 use crate::{Carrier, EmbedOptions, Evidence, Key, Payload};
 use js_sys::{Array, Function, JsString, Object, Reflect, Uint8Array};

@@ -1,44 +1,23 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
-//! There are two modules, each with a feature and a contract of its own, so that a page that only marks and checks loads no
-//! study: `marks.rs` with `types.d.ts`, and `study.rs` with `study.d.ts`. The package's tests hold the contracts to what is
+//! There are three modules, each with a feature and a contract of its own, so that a page that only marks and checks loads no
+//! study and no attack: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The package's tests hold the contracts to what is
 //! exported. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
+#[cfg(feature = "attacks")]
+mod attacks;
+#[cfg(any(feature = "marks", feature = "study"))]
+mod listener;
 #[cfg(feature = "marks")]
 mod marks;
 #[cfg(feature = "study")]
 mod study;
 
+use crate::Files;
 use crate::watermark::Error;
-use crate::{Files, Progress, Stage};
-use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, Object, Uint8Array};
 use serde::Serialize;
-use std::ops::ControlFlow;
 use wasm_bindgen::prelude::*;
-use web_sys::AbortSignal;
-
-/// A caller's callback and signal.
-struct Listener {
-    on_progress: Option<Function>,
-    signal: Option<AbortSignal>,
-}
-
-impl Progress for Listener {
-    fn report(&mut self, stage: Stage, fraction: f64) -> ControlFlow<()> {
-        let heard = self
-            .on_progress
-            .as_ref()
-            .map(|f| f.call2(&JsValue::NULL, &stage.name().into(), &fraction.into()));
-        // A callback that throws has asked for the work to stop.
-        let stopped =
-            matches!(heard, Some(Err(_))) || self.signal.as_ref().is_some_and(AbortSignal::aborted);
-        if stopped {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-}
 
 /// `undefined`, `null`, or an object of byte arrays.
 fn files_from(value: &JsValue) -> Result<Files, JsValue> {
@@ -60,8 +39,9 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     Ok(named)
 }
 
+#[cfg(any(feature = "marks", feature = "study"))]
 fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
-    Reflect::set(object, &name.into(), value).map(drop)
+    js_sys::Reflect::set(object, &name.into(), value).map(drop)
 }
 
 /// A report as a plain object: `null` for what is not there, numbers for whole numbers below 2^53.

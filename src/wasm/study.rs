@@ -1,6 +1,7 @@
 //! The study. Its functions take the mesh with every call: a worker that was ended has lost nothing.
 
-use super::{Listener, argument, encoded, files_from, set, thrown};
+use super::listener::Listener;
+use super::{argument, encoded, files_from, set, thrown};
 use crate::carrier::osveta::{self, Barycentre, Ranking};
 use crate::document::Document;
 use crate::geometry::diagonal;

@@ -27,7 +27,7 @@ export function markdown({ samples, rankings, stages, modules, host, rustc, chro
 |---|--:|--:|--:|--:|
 ${modules.map(moduleRow).join("\n")}
 
-The npm package is the first; the page loads the study's when it is asked for. The budgets are in \`wasm-pack.toml\`.
+The npm package is the first; the page loads the study's and the attacks' when they are asked for. The budgets are in \`wasm-pack.toml\`.
 
 ## Times
 

@@ -33,7 +33,7 @@ pub fn test(steps: &mut Steps) -> Result<()> {
     let builder = Builder::set_up(steps)?;
     steps.run("wasm lint", || {
         run(
-            &mut builder.cargo("clippy --lib --test suite --features study -- -Dwarnings"),
+            &mut builder.cargo("clippy --lib --test suite --features study,attacks -- -Dwarnings"),
             LINT,
         )
     })?;

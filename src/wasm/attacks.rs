@@ -1,0 +1,103 @@
+//! Trying to break a mark: the attacks by name, and what each costs. Whoever attacks has no key.
+
+use super::{argument, encoded, failure, files_from, thrown};
+use crate::attack::{CATALOGUE, Family, Step, step};
+use crate::document::Document;
+use crate::geometry::Quality;
+use crate::mesh::Mesh;
+use crate::scene::{Scene, to_glb};
+use crate::watermark::Error;
+use js_sys::{Array, Uint8Array};
+use serde::Serialize;
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("attacks.d.ts");
+
+/// Every attack there is.
+#[wasm_bindgen(skip_typescript)]
+pub fn catalogue() -> Result<JsValue, JsValue> {
+    #[derive(Serialize)]
+    struct Entry {
+        name: &'static str,
+        family: Family,
+        unit: &'static str,
+        levels: &'static [f64],
+        steps: Vec<String>,
+    }
+    let entries: Vec<_> = CATALOGUE
+        .iter()
+        .map(|attack| Entry {
+            name: attack.name,
+            family: attack.family,
+            unit: attack.unit,
+            levels: attack.levels,
+            steps: attack.steps().map(|step| step.to_string()).collect(),
+        })
+        .collect();
+    encoded(&entries)
+}
+
+/// A copy after some steps.
+#[wasm_bindgen(skip_typescript)]
+pub fn attack(
+    model: &[u8],
+    files: JsValue,
+    steps: JsValue,
+    seed: u32,
+) -> Result<Uint8Array, JsValue> {
+    let mut mesh = gathered(model, &files)?;
+    for (step, seed) in steps_from(steps)?.iter().zip(u64::from(seed)..) {
+        mesh = step.apply(&mesh, seed);
+        if mesh.triangles.is_empty() {
+            let message = format!("after {step} there is nothing left of the model");
+            return Err(failure("attack.nothing-left", &message, None));
+        }
+    }
+    Ok(Uint8Array::from(to_glb(&mesh).as_slice()))
+}
+
+/// What an attack cost and left.
+#[wasm_bindgen(skip_typescript)]
+pub fn quality(
+    reference: &[u8],
+    reference_files: JsValue,
+    model: &[u8],
+    files: JsValue,
+) -> Result<JsValue, JsValue> {
+    #[derive(Serialize)]
+    struct Report {
+        #[serde(flatten)]
+        quality: Quality,
+        vertices: usize,
+        triangles: usize,
+    }
+    let (reference, mesh) = (
+        gathered(reference, &reference_files)?,
+        gathered(model, &files)?,
+    );
+    encoded(&Report {
+        quality: Quality::between(&reference, &mesh),
+        vertices: mesh.positions.len(),
+        triangles: mesh.triangles.len(),
+    })
+}
+
+fn gathered(model: &[u8], files: &JsValue) -> Result<Mesh, JsValue> {
+    let scene = Document::read(model, &files_from(files)?)
+        .map_err(Error::from)
+        .and_then(|document| Scene::gather(&document).map_err(Error::from))
+        .map_err(thrown)?;
+    Ok(scene.mesh)
+}
+
+fn steps_from(names: JsValue) -> Result<Vec<Step>, JsValue> {
+    let names = names
+        .dyn_into::<Array>()
+        .map_err(|_| argument("steps is an array of names"))?;
+    let named = |name: JsValue| {
+        let known = name.as_string().and_then(|name| step(&name));
+        known.ok_or_else(|| argument(&format!("there is no attack {name:?}")))
+    };
+    names.iter().map(named).collect()
+}

@@ -466,6 +466,9 @@ test("after one visit the page works without a network, through a reload", async
   assert.equal(await headline(), "Your mark is in the copy");
   await page.getByRole("tab", { name: "Study" }).click();
   await page.locator("#traced").getByText("Ranked anew").waitFor();
+  await page.getByRole("tab", { name: "Break" }).click();
+  await button("Try noise 0.1 %").click();
+  await view().locator('tr[data-state="done"]').waitFor();
 });
 
 test("a made key file marks and finds, and a file of another length is refused", async () => {
@@ -544,6 +547,129 @@ test("what is wrong with a study is said in words", async () => {
   await view().getByText(/^Not measured: /).waitFor(); // a cube has no thousand hosts
 });
 
+test("the mark just made is attacked, once and in a chain, by hand and over the map, and every copy can be had", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await mark();
+  assert.equal(page.workers().length, 1);
+  await button("Try to break it").click();
+  const row = (title) => view().getByRole("row", { name: title });
+  const done = (title) => row(title).and(page.locator('[data-state="done"]')).waitFor();
+  assert.match(await row("As it was marked").textContent(), /✓ Found.*1 in 10\d+ln p −\d+/);
+  assert.ok(await eventually(() => page.workers().length === 3), `${page.workers().length} workers`); // to mark, to attack, to read
+
+  await button("Try noise 0.1 %").click();
+  await done("Noise 0.1 %");
+  await slide("noise", 3);
+  await button("Try noise 0.5 %").click();
+  await done("Noise 0.5 %");
+  for (const [name, level, step] of [["crop", 1, "crop 30 %"], ["simplify", 2, "simplify 50 %"], ["quantize", 3, "quantize 10 bits"], ["noise", 0, "noise 0.05 %"]]) {
+    await slide(name, level);
+    await button(`Add ${step} to the chain`).click();
+  }
+  await button("Take noise 0.05 % out of the chain").click();
+  const chain = "Crop 30 %, simplify 50 %, quantize 10 bits";
+  await button("Try the chain").click();
+  await done(chain);
+  for (const title of ["Noise 0.1 %", "Noise 0.5 %", chain]) {
+    const [came, , , , cost, faces] = await row(title).getByRole("cell").allTextContents();
+    assert.match(came, /Found|Fits partly|Lost/);
+    assert.match(cost, /^RMS 0\.\d+ %at most [\d.]+ %MSDM 0\.\d\d$/);
+    assert.match(faces, /^[\d,]+\d+ %$/);
+  }
+  await view().getByText("Deliberate").first().click();
+  await button("Try second mark by another key").click();
+  await done("Second mark by another key");
+  assert.match(await row("Second mark by another key").textContent(), /✓ Found/);
+  await picture("broken");
+
+  const copy = await saved(`Save the copy after ${chain}`);
+  assert.equal(basename(copy), "demo.marked.crop-30-simplify-50-quantize-10-bits.glb");
+  const again = new Uint8Array(readFileSync(copy));
+  assert.ok(meshmark.inspect(again).triangles < 0.5 * meshmark.inspect(meshmark.demoModel()).triangles);
+  await drop(copy);
+  await done(basename(copy));
+  assert.equal(await came(basename(copy)), await came(chain));
+  await drop(onDisk("notes.txt", "nothing"));
+  await view().getByText("Cannot open: There is no .glb or .gltf file in this.").waitFor();
+  await drop(onDisk("nothing.glb", "glTF but no more"));
+  await row("nothing.glb").getByText(/^Failed: /).waitFor();
+
+  async function came(title) {
+    return (await row(title).getByRole("cell").allTextContents())[0];
+  }
+
+  async function slide(name, level) {
+    await page.getByRole("slider", { name: `Level of ${name}`, exact: true }).fill(String(level));
+  }
+});
+
+test("the survival map fills in until it is cancelled, what is asked for comes first, and a cell shows its copy", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await mark();
+  await button("Try to break it").click();
+  const cells = view().locator(".cell");
+  const filled = () => view().locator('.cell[data-state="done"]').count();
+  await button("Fill the map").click();
+  assert.ok(await eventually(async () => (await filled()) > 2), "nothing fills in");
+  await button("Try quantize 10 bits").click();
+  await view().getByRole("row", { name: "Quantize 10 bits" }).and(page.locator('[data-state="done"]')).waitFor();
+  await view().locator(".map-state").getByRole("button", { name: "Cancel" }).click();
+  await button("Fill the rest").waitFor();
+  const some = await filled();
+  assert.ok(some > 2 && some < (await cells.count()), `${some}`);
+  await page.waitForTimeout(1000);
+  assert.equal(await filled(), some, "it goes on");
+
+  const tried = cells.first();
+  assert.match(await tried.getAttribute("aria-label"), /^Reorder: found, by chance at most 1 in 10[⁰¹²³⁴⁵⁶⁷⁸⁹]+$/);
+  assert.equal(await tried.textContent(), "✓");
+  const [, right] = await canvas().all();
+  const before = await right.screenshot();
+  await tried.press("Enter");
+  await view().getByRole("row", { name: "Reorder" }).waitFor();
+  await view().locator(".pair", { hasText: "Reorder" }).waitFor();
+  assert.ok(await eventually(async () => !(await right.screenshot()).equals(before)), "its copy is not shown");
+  const untried = cells.and(page.locator('[data-state="cancelled"], [data-state="idle"]')).first();
+  const title = (await untried.getAttribute("aria-label")).split(":")[0];
+  await untried.click();
+  await view().getByRole("row", { name: title, exact: true }).and(page.locator('[data-state="done"]')).or(view().getByRole("row", { name: `${title} seed 1` })).first().waitFor();
+
+  await button("Another model").click();
+  await view().getByRole("heading", { name: "Try to break your mark" }).waitFor();
+  assert.ok(await eventually(() => page.workers().length <= 2), "the key's worker lives on");
+});
+
+test("the attacked copy and the marked one are seen by one eye", async () => {
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await mark();
+  await button("Try to break it").click();
+  await button("Try similarity").click();
+  await view().getByRole("row", { name: "Similarity" }).and(page.locator('[data-state="done"]')).waitFor();
+  const [left, right] = await canvas().all();
+  const look = () => Promise.all([left, right].map((side) => side.screenshot()));
+  await left.press("0"); // so that the focus is seen as it will be
+  await page.waitForTimeout(500);
+  const first = await look();
+  await right.press("ArrowLeft");
+  assert.ok(await eventually(async () => (await look()).every((side, i) => !side.equals(first[i]))), "one of them stands still");
+  await left.press("0");
+  assert.ok(await eventually(async () => (await look()).every((side, i) => side.equals(first[i]))), "one of them does not come back");
+});
+
+test("what carries no mark of the key cannot be broken, and says so", async () => {
+  await page.getByRole("tab", { name: "Break" }).click();
+  await button("Begin").click();
+  await view().getByText("First drop a model, or choose one.").or(page.getByText("Whose mark is it? Give a name.")).first().waitFor();
+  await dropped(onDisk("demo.glb", meshmark.demoModel()));
+  await fillKey();
+  await button("Begin").click();
+  await result().getByText("There is nothing to break").waitFor();
+  const { model } = meshmark.embed(meshmark.demoModel(), undefined, TAG, meshmark.deriveKey(OWNER, PASSPHRASE));
+  await dropped(onDisk("mine.glb", model));
+  await button("Begin").click();
+  await view().getByRole("row", { name: "As it was marked" }).waitFor();
+});
+
 test("what a tag cannot be is said while it is typed", async () => {
   const tag = page.getByLabel("Tag", { exact: true });
   for (const [text, problem] of [
@@ -612,6 +738,12 @@ test("every control has a name", async () => {
   await page.getByRole("tab", { name: "Study" }).click();
   await page.locator("#traced").getByText("Ranked anew").waitFor();
   await assertNamed();
+  await page.getByRole("tab", { name: "Protect" }).click();
+  await mark();
+  await button("Try to break it").click();
+  await button("Try noise 0.1 %").click();
+  await view().locator('tr[data-state="done"]').waitFor();
+  await assertNamed();
 });
 
 async function assertNamed() {
@@ -636,9 +768,20 @@ for (const [name, options] of [
     await mark();
     await page.waitForTimeout(500);
     await picture(`${name}-marked`);
-    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-    assert.ok(overflow <= 0, `${overflow} px too wide`);
+    await assertFits();
+    await button("Try to break it").click();
+    await button("Try noise 0.1 %").click();
+    await view().locator('tr[data-state="done"]').waitFor();
+    await page.waitForTimeout(500);
+    await picture(`${name}-broken`);
+    await assertFits();
   });
+}
+
+async function assertFits() {
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `${overflow} px too wide`);
+  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
 }
 
 /** A torus with bumps, its triangles turned outwards. */

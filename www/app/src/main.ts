@@ -1,4 +1,5 @@
-/** The page: three views, one key form, one engine. */
+/** The page: four views, one key form, one engine. */
+import { Break } from "./break/break";
 import { Check } from "./check";
 import { find } from "./dom";
 import { onDrop } from "./drop";
@@ -12,26 +13,37 @@ import { startTabs } from "./tabs";
 
 const protectTab = find("#protect-tab");
 const checkTab = find("#check-tab");
+const breakTab = find("#break-tab");
 const studyTab = find("#study-tab");
 
 const check = new Check(find("#check"));
-const protect = new Protect(find("#protect"), (marked) => {
-  select(checkTab);
-  checkTab.focus();
-  void check.take(marked);
+const attack = new Break(find("#break"));
+const protect = new Protect(find("#protect"), {
+  onCheck: (marked) => {
+    go(checkTab);
+    void check.take(marked);
+  },
+  onBreak: () => go(breakTab),
 });
 
 const study = new Study(find("#study"));
-const views = [protect, check, study];
+const views = [protect, check, attack, study];
 
 startKeyForm(() => protect.onOtherMark());
-const select = startTabs([protectTab, checkTab, studyTab], (panel) => {
+const select = startTabs([protectTab, checkTab, breakTab, studyTab], (panel) => {
   if (panel !== study.root) {
     placeKeyForm(panel);
   }
   protect.onShown(panel === protect.root);
+  attack.onShown(panel === attack.root, protect.marked);
   study.onShown(panel === study.root, protect.shown);
 });
+
+function go(tab: HTMLElement): void {
+  select(tab);
+  tab.focus();
+}
+
 select(protectTab);
 
 onDrop((files) => void views.find(({ root }) => !root.hidden)?.takeFiles(files));

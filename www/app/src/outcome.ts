@@ -10,7 +10,7 @@ export function card(verdict: Verdict | "error", headline: string | Node[], sent
 }
 
 /** What could not be done, and why; the code is for whoever reports it. */
-export function errorCard(what: "Cannot mark" | "Cannot check" | "Cannot study" | "Cannot open" | "Cannot start", error: unknown): HTMLElement {
+export function errorCard(what: "Cannot mark" | "Cannot check" | "Cannot attack" | "Cannot study" | "Cannot open" | "Cannot start", error: unknown): HTMLElement {
   const { text, code, path } = problem(error);
   const place = path ? [", at ", h("code", {}, path)] : [];
   const headline = [h("strong", {}, what), document.createTextNode(`: ${text}.`)];
@@ -39,7 +39,8 @@ export function chance(lnP: number): HTMLElement {
   return h("span", {}, "at most ", oddsOf(lnP));
 }
 
-function oddsOf(lnP: number): HTMLElement {
+/** "1 in 10^24". */
+export function oddsOf(lnP: number): HTMLElement {
   const [text, exponent] = odds(lnP);
   return h("span", {}, text, ...(exponent ? [h("sup", {}, exponent)] : []));
 }

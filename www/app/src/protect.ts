@@ -29,6 +29,13 @@ const REST = 500;
 /** The tag that is tried before there is one. */
 const STAND_IN_TAG = "PREVIEW";
 
+export interface ProtectEvents {
+  /** To check it as anybody would. */
+  onCheck(marked: Model): void;
+  /** To try to break its mark. */
+  onBreak(): void;
+}
+
 export class Protect extends View<Stage> {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
@@ -38,12 +45,12 @@ export class Protect extends View<Stage> {
   #trial: Trial | undefined;
   #timer = 0;
   /** While the finished copy of this model stands there, nothing is tried. */
-  #isMarked = false;
+  #marked: Model | undefined;
 
-  /** @param onCheck is given the marked copy, to check it as anybody would */
+  /** @param events what can be done with the marked copy in other views */
   constructor(
     root: HTMLElement,
-    readonly onCheck: (marked: Model) => void,
+    readonly events: ProtectEvents,
   ) {
     super(root, "Cannot mark", Stage);
     watchTag(this.#tag);
@@ -106,6 +113,11 @@ export class Protect extends View<Stage> {
     super.close();
   }
 
+  /** The finished copy, while it stands there. */
+  get marked(): Model | undefined {
+    return this.#marked;
+  }
+
   /** While another view is in front, nothing is tried: it may need the engine. */
   onShown(isShown: boolean): void {
     if (isShown) {
@@ -126,8 +138,8 @@ export class Protect extends View<Stage> {
   /** Another strength or other carriers: the copy that stands there is not of these. */
   #onOtherLook(): void {
     this.#dropTrial();
-    if (this.#isMarked) {
-      this.#isMarked = false;
+    if (this.#marked) {
+      this.#marked = undefined;
       this.outcome.replaceChildren();
     }
     this.#tryLater();
@@ -137,7 +149,7 @@ export class Protect extends View<Stage> {
     clearTimeout(this.#timer);
     this.#dropTrial();
     this.#preview.hide();
-    this.#isMarked = false;
+    this.#marked = undefined;
   }
 
   /** One that has been taken over as the result goes on: only who waits for it ends it. */
@@ -157,7 +169,7 @@ export class Protect extends View<Stage> {
   async #try(): Promise<void> {
     const { model } = this;
     const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
-    const isNeeded = !this.#isMarked && (!this.#trial || (isExact && !this.#trial.isExact));
+    const isNeeded = !this.#marked && (!this.#trial || (isExact && !this.#trial.isExact));
     if (!model || !isNeeded || !this.#isPromising() || this.root.hidden || this.isRunning) {
       return;
     }
@@ -210,16 +222,14 @@ export class Protect extends View<Stage> {
       if (!embedding) {
         this.#trial = undefined;
       } else if (model === this.model) {
-        this.#isMarked = true;
-        await this.#present(model, embedding);
+        this.#marked = markedCopy(model, embedding);
+        await this.#present(model, this.#marked, embedding);
       }
     });
   }
 
-  async #present(model: Model, embedding: Embedding): Promise<void> {
-    const { files, report } = embedding;
-    const marked = markedCopy(model, embedding);
-    present(this.outcome, this.#card(model, marked, Object.entries(files), report));
+  async #present(host: Model, marked: Model, { files, report }: Embedding): Promise<void> {
+    present(this.outcome, this.#card(host, marked, Object.entries(files), report));
     await this.stage.showMarked(marked, report, { version: "after" });
   }
 
@@ -253,7 +263,8 @@ export class Protect extends View<Stage> {
         ]),
       ),
       actions(
-        button("Check this copy", () => this.onCheck(marked)),
+        button("Check this copy", () => this.events.onCheck(marked)),
+        ...(holds ? [button("Try to break it", () => this.events.onBreak())] : []),
         button("Save report (JSON)", async () => saveJson(renamed(marked.name, "report.json"), await embedReport(model, marked, report))),
       ),
     );

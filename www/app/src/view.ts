@@ -16,7 +16,7 @@ export abstract class View<S extends Showing> {
 
   constructor(
     readonly root: HTMLElement,
-    readonly cannot: "Cannot mark" | "Cannot check" | "Cannot study",
+    readonly cannot: "Cannot mark" | "Cannot check" | "Cannot attack" | "Cannot study",
     OwnStage: new (view: HTMLElement, events: StageEvents) => S,
   ) {
     this.form = find<HTMLFormElement>("[data-form]", root);

@@ -3,8 +3,8 @@ import { Box3, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, MeshStandard
 import type { Heat } from "./heat";
 import { smoothNormals } from "./normals";
 
-/** `surface`: the file's materials. `raking`: clay under a low light. `heat`: how far each vertex moved. */
-export type Shading = "surface" | "raking" | "heat";
+/** `surface`: the file's materials. `clay`: none. `raking`: clay under a low light. `heat`: how far each vertex moved. */
+export type Shading = "surface" | "clay" | "raking" | "heat";
 
 /** Which normals the clay is shaded with: those that the geometry has, or those that the file says it has. */
 export type Normals = "geometry" | "file";
@@ -68,14 +68,14 @@ export class Layer {
       this.meshes.forEach((mesh, i) => {
         const own = this.#surfaces[i]!;
         mesh.geometry = geometries?.[i] ?? own.geometry;
-        mesh.material = look.shading === "raking" ? clayFor(own.material) : geometries ? HEAT : own.material;
+        mesh.material = isClay(look.shading) ? clayFor(own.material) : geometries ? HEAT : own.material;
       });
     }
   }
 
   /** What takes the place of the meshes' own geometries, if anything does. */
   #geometries(shading: Shading, normals: Normals): BufferGeometry[] | undefined {
-    if (shading === "raking" && normals === "geometry") {
+    if (isClay(shading) && normals === "geometry") {
       return (this.#smooth ??= this.#with("normal", smoothNormals(this.meshes)));
     }
     return shading === "heat" ? this.#hot : undefined;
@@ -104,6 +104,10 @@ export class Layer {
       [material].flat().forEach(disposeMaterial);
     }
   }
+}
+
+function isClay(shading: Shading): boolean {
+  return shading === "clay" || shading === "raking";
 }
 
 function clayFor(material: Material | Material[]): Material {

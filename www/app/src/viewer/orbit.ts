@@ -28,6 +28,12 @@ const FIRST_DIRECTION = new Vector3(0.55, 0.35, 1).normalize();
 const KEY_TURN = Math.PI / 24;
 const KEY_ZOOM = 1.15;
 
+/** Where the eye is and what it looks at, from the middle of what was framed and in its radii: the same for scenes of any size. */
+interface Pose {
+  eye: Vector3;
+  target: Vector3;
+}
+
 export class Orbit {
   readonly scene = new Scene();
   readonly #renderer: WebGLRenderer;
@@ -36,6 +42,8 @@ export class Orbit {
   readonly #controls: OrbitControls;
   readonly #bounds = new Sphere();
   #frame = 0;
+  #led: Orbit | undefined;
+  #isLed = false;
 
   /** @throws where the browser has no WebGL 2 */
   constructor(canvas: HTMLCanvasElement) {
@@ -49,7 +57,12 @@ export class Orbit {
 
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.#controls.addEventListener("change", () => this.draw());
+    this.#controls.addEventListener("change", () => {
+      this.draw();
+      if (!this.#isLed) {
+        this.#led?.follow(this);
+      }
+    });
     canvas.addEventListener("keydown", (event) => this.#key(event));
     canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.light(SOFT);
@@ -60,6 +73,29 @@ export class Orbit {
   frame(bounds: Sphere): void {
     this.#bounds.copy(bounds);
     this.reset();
+  }
+
+  /** Takes another eye along wherever this one goes. */
+  lead(other: Orbit): void {
+    this.#led = other;
+  }
+
+  /** Looks as another eye does, each at its own scene. */
+  follow(other: Orbit): void {
+    const { eye, target } = other.#pose();
+    const { center, radius } = this.#bounds;
+    this.#controls.target.copy(target).multiplyScalar(radius).add(center);
+    this.#camera.position.copy(eye).multiplyScalar(radius).add(center);
+    this.#isLed = true;
+    this.#controls.update();
+    this.#isLed = false;
+    this.draw();
+  }
+
+  #pose(): Pose {
+    const { center, radius } = this.#bounds;
+    const relative = (place: Vector3) => place.clone().sub(center).divideScalar(Math.max(radius, 1e-9));
+    return { eye: relative(this.#camera.position), target: relative(this.#controls.target) };
   }
 
   light({ from, intensity, surroundings }: Lighting): void {

@@ -1,5 +1,5 @@
 /** A model on a canvas: before and after, edges, raking light, heat map. */
-import type { Object3D } from "three";
+import type { Object3D, Sphere } from "three";
 import { heatOf } from "./heat";
 import { Layer, type Normals, type Shading } from "./layer";
 import { Orbit, RAKING, SOFT } from "./orbit";
@@ -13,12 +13,16 @@ export interface Look {
   normals: Normals;
 }
 
+/** Two models stand in the same place where their spheres' middles are so near, and their radii so much alike, in radii. */
+const SAME_PLACE = 0.7;
+
 const FIRST_LOOK: Look = { version: "before", wireframe: false, shading: "surface", normals: "geometry" };
 
 export class Viewer {
   readonly #orbit: Orbit;
   readonly #layers: Partial<Record<Version, Layer>> = {};
   #look = FIRST_LOOK;
+  #bounds: Sphere | undefined;
 
   /** @throws where the browser has no WebGL 2 */
   constructor(canvas: HTMLCanvasElement) {
@@ -29,7 +33,22 @@ export class Viewer {
   showBefore(root: Object3D): void {
     this.clear();
     this.#add("before", root);
-    this.#orbit.frame(this.#layers.before!.bounds());
+    this.#bounds = this.#layers.before!.bounds();
+    this.#orbit.frame(this.#bounds);
+  }
+
+  /** Shows a model alone as another viewer shows its own: in the same frame, unless it stands elsewhere or is of another size. */
+  showBeside(root: Object3D, other: Viewer): void {
+    this.showBefore(root);
+    if (other.#bounds && this.#bounds && isInPlace(this.#bounds, other.#bounds)) {
+      this.#orbit.frame(other.#bounds);
+    }
+    this.#orbit.follow(other.#orbit);
+  }
+
+  /** Takes another viewer's eye along wherever this one's goes. */
+  lead(other: Viewer): void {
+    this.#orbit.lead(other.#orbit);
   }
 
   /**
@@ -93,4 +112,9 @@ export class Viewer {
     this.look({});
     return layer;
   }
+}
+
+/** Whether a part of what was in `whole`, or all of it, may be in `part`. */
+function isInPlace(part: Sphere, whole: Sphere): boolean {
+  return part.center.distanceTo(whole.center) < SAME_PLACE * whole.radius && part.radius > (1 - SAME_PLACE) * whole.radius && part.radius < (1 + SAME_PLACE) * whole.radius;
 }

@@ -1,0 +1,132 @@
+/** A marked model and its key, and whatever can be done to the one and read with the other. */
+import type { Extraction } from "meshmark";
+import { createClient, type Client } from "meshmark/client";
+import type { Attack, Quality } from "../../attacks-wasm/attacks.js";
+import { renamed, type Model } from "../model";
+import type { Progress } from "../task";
+import { STAGES } from "../words";
+import type { Finding, Level, Telling, Work } from "./attempt";
+import { attacker } from "./engine";
+
+/** What no catalogue has, for it takes a key: the copy is marked again, by nobody's key. */
+export const SECOND_MARK = "second mark by another key";
+
+const KEY_BYTES = 32;
+
+export class Bench {
+  readonly #key: Uint8Array;
+  readonly #client: Client;
+
+  /** What is left of the mark before anything is done. */
+  private constructor(
+    readonly marked: Model,
+    key: Uint8Array,
+    client: Client,
+    readonly first: Finding,
+    readonly catalogue: Attack[],
+  ) {
+    this.#key = key;
+    this.#client = client;
+  }
+
+  /** Reads a model, and keeps the key for all that is read later: it is overwritten by `close`. */
+  static async open(marked: Model, key: Uint8Array, progress: Progress): Promise<Bench> {
+    const client = await createClient(); // of its own: the other views need not wait
+    try {
+      const reading = await client.detect(marked.bytes, marked.buffers, key, undefined, progress);
+      const { vertices, triangles } = await client.inspect(marked.bytes, marked.buffers, progress);
+      const quality = { rmsRel: 0, hausdorffRel: 0, msdm: 0, vertices, triangles };
+      const { result: catalogue } = await attacker.ask("catalogue", [], { signal: progress.signal });
+      return new Bench(marked, key, client, { reading, quality, level: levelOf(reading, reading.number) }, catalogue);
+    } catch (error) {
+      key.fill(0);
+      client.dispose();
+      throw error;
+    }
+  }
+
+  close(): void {
+    this.#key.fill(0);
+    this.#client.dispose();
+  }
+
+  /** Steps of the catalogue and second marks, one upon the other. */
+  attack(steps: string[], seed: number): Work {
+    return async (telling) => {
+      let copy = this.marked;
+      for (const group of groups(steps)) {
+        copy = group[0] === SECOND_MARK ? await this.#markAgain(copy, telling) : await this.#attack(copy, group, seed, telling);
+      }
+      const { name } = this.marked;
+      const blob = new Blob([copy.bytes]);
+      const made = async () => glb(renamed(name, `${slug(steps)}.glb`), new Uint8Array(await blob.arrayBuffer()));
+      telling.made(made);
+      return this.#judge(copy, telling);
+    };
+  }
+
+  /** Whatever a person has made of the marked model elsewhere. */
+  judge(copy: Model): Work {
+    return async (telling) => {
+      telling.made(async () => copy);
+      return this.#judge(copy, telling);
+    };
+  }
+
+  async #attack(model: Model, steps: string[], seed: number, { say, signal }: Telling): Promise<Model> {
+    say("Making the copy …", null);
+    const { result } = await attacker.ask("attack", [model.bytes, model.buffers, steps, seed], { signal });
+    return glb(model.name, result as Model["bytes"]);
+  }
+
+  async #markAgain(model: Model, { say, signal }: Telling): Promise<Model> {
+    const tag = "OTHER";
+    const key = crypto.getRandomValues(new Uint8Array(KEY_BYTES));
+    say("Marking the copy by another key …", null);
+    const { model: bytes, files } = await this.#client.embed(model.bytes, model.buffers, tag, key, {}, { signal });
+    return { ...model, bytes: bytes as Model["bytes"], buffers: { ...model.buffers, ...files } };
+  }
+
+  async #judge(copy: Model, { say, signal }: Telling): Promise<Finding> {
+    say("Measuring what was paid …", null);
+    const quality = await qualityOf(this.marked, copy, signal);
+    say(`${STAGES.test} …`, null);
+    const reading = await this.#client.detect(copy.bytes, copy.buffers, this.#key, undefined, { signal, onProgress: (stage, fraction) => say(`${STAGES[stage]} …`, fraction) });
+    return { reading, quality, level: levelOf(reading, this.first.reading.number) };
+  }
+}
+
+async function qualityOf(marked: Model, copy: Model, signal: AbortSignal): Promise<Quality> {
+  const { result } = await attacker.ask("quality", [marked.bytes, marked.buffers, copy.bytes, copy.buffers], { signal });
+  return result;
+}
+
+function levelOf({ verdict, number }: Extraction, own: number | null): Level {
+  if (verdict === "found" && (own === null || number === own)) {
+    return "green";
+  }
+  return verdict === "partial" ? "amber" : "red";
+}
+
+/** Steps that one module takes together; a second mark by itself. */
+function groups(steps: string[]): string[][] {
+  const groups: string[][] = [];
+  for (const step of steps) {
+    const last = groups.at(-1);
+    if (last && step !== SECOND_MARK && last[0] !== SECOND_MARK) {
+      last.push(step);
+    } else {
+      groups.push([step]);
+    }
+  }
+  return groups;
+}
+
+function glb(name: string, bytes: Model["bytes"]): Model {
+  return { name: renamed(name, "glb"), bytes, buffers: {}, images: {} };
+}
+
+/** Steps as a part of a file's name. */
+function slug(steps: string[]): string {
+  return steps.join("-").toLowerCase().replaceAll(" %", "").replaceAll(/[^a-z0-9.]+/g, "-");
+}

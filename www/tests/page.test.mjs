@@ -559,12 +559,12 @@ test("the mark just made is attacked, once and in a chain, by hand and over the 
 
   await button("Try noise 0.1 %").click();
   await done("Noise 0.1 %");
-  await slide("noise", 3);
+  await slide("noise", "0.5 %");
   await button("Try noise 0.5 %").click();
   await done("Noise 0.5 %");
-  for (const [name, level, step] of [["crop", 1, "crop 30 %"], ["simplify", 2, "simplify 50 %"], ["quantize", 3, "quantize 10 bits"], ["noise", 0, "noise 0.05 %"]]) {
+  for (const [name, level] of [["crop", "30 %"], ["simplify", "50 %"], ["quantize", "10 bits"], ["noise", "0.05 %"]]) {
     await slide(name, level);
-    await button(`Add ${step} to the chain`).click();
+    await button(`Add ${name} ${level} to the chain`).click();
   }
   await button("Take noise 0.05 % out of the chain").click();
   const chain = "Crop 30 %, simplify 50 %, quantize 10 bits";
@@ -597,10 +597,6 @@ test("the mark just made is attacked, once and in a chain, by hand and over the 
   async function came(title) {
     return (await row(title).getByRole("cell").allTextContents())[0];
   }
-
-  async function slide(name, level) {
-    await page.getByRole("slider", { name: `Level of ${name}`, exact: true }).fill(String(level));
-  }
 });
 
 test("the survival map fills in until it is cancelled, what is asked for comes first, and a cell shows its copy", async () => {
@@ -611,6 +607,7 @@ test("the survival map fills in until it is cancelled, what is asked for comes f
   const filled = () => view().locator('.cell[data-state="done"]').count();
   await button("Fill the map").click();
   assert.ok(await eventually(async () => (await filled()) > 2), "nothing fills in");
+  await slide("quantize", "10 bits");
   await button("Try quantize 10 bits").click();
   await view().getByRole("row", { name: "Quantize 10 bits" }).and(page.locator('[data-state="done"]')).waitFor();
   await view().locator(".map-state").getByRole("button", { name: "Cancel" }).click();
@@ -776,6 +773,19 @@ for (const [name, options] of [
     await picture(`${name}-broken`);
     await assertFits();
   });
+}
+
+/** Moves an attack's slider to a level, wherever that is among them. */
+async function slide(name, level) {
+  const slider = page.getByRole("slider", { name: `Level of ${name}`, exact: true });
+  const most = Number(await slider.getAttribute("max"));
+  for (let i = 0; i <= most; i++) {
+    await slider.fill(String(i));
+    if ((await slider.getAttribute("aria-valuetext")) === level) {
+      return;
+    }
+  }
+  assert.fail(`${name} has no level ${level}`);
 }
 
 async function assertFits() {

@@ -45,8 +45,9 @@ export function choices(catalogue: Attack[]): Choice[] {
   });
 }
 
+/** With a capital, but for the one name that begins without. */
 export function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return text.startsWith("glTF") ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 /** Steps as one sees them: "Crop 30 %, simplify 50 %". */

@@ -8,7 +8,7 @@ import { runTask } from "../task";
 import { View } from "../view";
 import { VERDICTS } from "../words";
 import { Attempt, type Copy, type Work } from "./attempt";
-import { Bench } from "./bench";
+import { Bench, SECOND_MARK } from "./bench";
 import { Chain } from "./chain";
 import { SurvivalMap } from "./map";
 import { picker } from "./picker";
@@ -157,7 +157,9 @@ export class Break extends View<BreakStage> {
     const bench = this.#bench!;
     const seed = Math.max(0, Math.floor(this.#seed.valueAsNumber || 0)) % 2 ** 32;
     const work: Work = (telling) => bench.attack(steps.map(({ name }) => name), seed)(telling);
-    return this.#made(stepsWords(steps), `seed ${seed}`, work);
+    // A second mark's key is drawn anew each time.
+    const hint = steps.some(({ name }) => name === SECOND_MARK) ? `seed ${seed}, a fresh key` : `seed ${seed}`;
+    return this.#made(stepsWords(steps), hint, work);
   }
 
   #made(title: string, hint: string, work: Work): Attempt {

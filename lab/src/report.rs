@@ -202,8 +202,19 @@ impl Report<'_> {
              | attack | model | strength | removed by | RMS, % | Hausdorff, % | MSDM |\n|---|---|---|--:|--:|--:|--:|\n",
         );
         for means in &self.scope.means {
-            let removals = self.results.removals.iter();
-            for removal in removals.filter(|removal| removal.means == means.name) {
+            let of = |model: &str, strength: &str| {
+                let mut removals = self.results.removals.iter();
+                removals.find(|removal| {
+                    removal.means == means.name
+                        && removal.model == model
+                        && removal.strength == strength
+                })
+            };
+            let models = self.scope.models.iter();
+            let removals = models.flat_map(|model| {
+                (self.strengths()).filter_map(move |strength| of(&model.name, strength))
+            });
+            for removal in removals {
                 let cost = match &removal.weakest {
                     Some((level, quality)) => format!(
                         "{}{} | {} | {} | {}",

@@ -1,13 +1,9 @@
 //! Simplification by edge collapses, the cheapest first: what its methods have in common.
 
 use super::editing::Editable;
+use super::queue::{Candidate, Queue};
 use crate::mesh::Mesh;
 use glam::DVec3;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-/// Candidates that a collapse mostly gives at most: with room for so many, those out of date are dropped before it has to grow.
-const MOST_AT_ONCE: usize = 64;
 
 /// What a method of simplification decides.
 pub(super) trait Placement {
@@ -34,33 +30,39 @@ pub(super) fn collapse(mesh: &Mesh, mut placement: impl Placement, until: Until)
     let mut editable = Editable::new(mesh);
     // Counts a vertex's changes: a candidate of another count is out of date.
     let mut ages = vec![0u32; mesh.positions.len()];
-    // Costs are not negative, so their bits are in their order.
-    let entry = |ages: &[u32], cost: f64, a: u32, b: u32| {
-        Reverse((cost.to_bits(), a, b, ages[a as usize], ages[b as usize]))
+    let candidate = |ages: &[u32], cost: f64, a: u32, b: u32| Candidate {
+        cost: cost.to_bits(),
+        ends: [a, b],
+        ages: [a, b].map(|v| ages[v as usize]),
     };
+    let is_current =
+        |ages: &[u32],
+         Candidate {
+             ends, ages: then, ..
+         }: &Candidate| { ends.map(|v| ages[v as usize]) == *then };
     let edges = editable.edges();
     let mut num_edges = edges.len();
     let (most_edges, most_faces) = match until {
         Until::WithoutEdges(part) => (((1.0 - part) * num_edges as f64).ceil() as usize, 0),
         Until::Faces(most) => (0, most),
     };
-    let mut heap = BinaryHeap::with_capacity(edges.len() / 4 * 5 + MOST_AT_ONCE);
-    heap.extend(edges.into_iter().filter_map(|[a, b]| {
+    let mut queue = Queue::new(edges.into_iter().filter_map(|[a, b]| {
         let (_, cost) = placement.place(&editable, a, b)?;
-        Some(entry(&ages, cost, a, b))
+        Some(candidate(&ages, cost, a, b))
     }));
     while num_edges > most_edges && editable.num_faces() > most_faces {
-        let Some(Reverse((queued, a, b, age_a, age_b))) = heap.pop() else {
+        let Some(cheapest) = queue.pop(|candidate| is_current(&ages, candidate)) else {
             break;
         };
-        if (age_a, age_b) != (ages[a as usize], ages[b as usize]) {
+        if !is_current(&ages, &cheapest) {
             continue;
         }
+        let [a, b] = cheapest.ends;
         let Some((to, cost)) = placement.place(&editable, a, b) else {
             continue;
         };
-        if cost.to_bits() > queued {
-            heap.push(entry(&ages, cost, a, b));
+        if cost.to_bits() > cheapest.cost {
+            queue.push(candidate(&ages, cost, a, b));
             continue;
         }
         let num_faces = editable.num_faces();
@@ -71,15 +73,10 @@ pub(super) fn collapse(mesh: &Mesh, mut placement: impl Placement, until: Until)
         placement.merge(a, b);
         ages[a as usize] += 1;
         ages[b as usize] += 1;
-        if heap.len() + MOST_AT_ONCE > heap.capacity() {
-            heap.retain(|Reverse((_, a, b, age_a, age_b))| {
-                (*age_a, *age_b) == (ages[*a as usize], ages[*b as usize])
-            });
-        }
         for neighbour in editable.neighbours(a) {
             let (a, b) = (a.min(neighbour), a.max(neighbour));
             if let Some((_, cost)) = placement.place(&editable, a, b) {
-                heap.push(entry(&ages, cost, a, b));
+                queue.push(candidate(&ages, cost, a, b));
             }
         }
     }

@@ -19,7 +19,11 @@ pub(super) struct Editable {
 
 impl Editable {
     pub fn new(mesh: &Mesh) -> Editable {
-        let mut faces_at = vec![Vec::new(); mesh.positions.len()];
+        let mut num_faces_at = vec![0; mesh.positions.len()];
+        let corners = mesh.triangles.iter().flatten();
+        corners.for_each(|&v| num_faces_at[v as usize] += 1);
+        let mut faces_at: Vec<Vec<u32>> =
+            num_faces_at.into_iter().map(Vec::with_capacity).collect();
         for (name, &face) in (0..).zip(&mesh.triangles) {
             face.iter().for_each(|&v| faces_at[v as usize].push(name));
         }
@@ -82,9 +86,18 @@ impl Editable {
     }
 
     /// The third corners of an edge's faces.
-    pub fn apexes(&self, a: u32, b: u32) -> Vec<u32> {
-        let faces = self.faces_at(a).filter(|face| face.contains(&b));
-        faces.map(|face| third(face, a, b)).collect()
+    pub fn apexes(&self, a: u32, b: u32) -> impl Iterator<Item = u32> + '_ {
+        let faces = self.faces_at(a).filter(move |face| face.contains(&b));
+        faces.map(move |face| third(face, a, b))
+    }
+
+    /// The third corners of the faces of an edge that has just two.
+    pub fn opposite(&self, a: u32, b: u32) -> Option<[u32; 2]> {
+        let mut apexes = self.apexes(a, b);
+        match (apexes.next(), apexes.next(), apexes.next()) {
+            (Some(first), Some(second), None) => Some([first, second]),
+            _ => None,
+        }
     }
 
     /// Every edge once, in rising order.
@@ -121,7 +134,7 @@ impl Editable {
     /// Makes one vertex of an edge's two, `kept` at the position `to`, if the surface stays what it is: the link condition
     /// (Dey, Edelsbrunner, Guha and Nekhayev 1999), no face turned over or gone thin, no component gone. Says whether it did.
     pub fn collapse(&mut self, kept: u32, lost: u32, to: DVec3) -> bool {
-        let apexes = self.apexes(kept, lost);
+        let apexes: Vec<u32> = self.apexes(kept, lost).collect();
         if !self.keeps_its_kind(kept, lost, &apexes) || !self.keeps_its_faces(kept, lost, to) {
             return false;
         }
@@ -147,9 +160,9 @@ impl Editable {
         match *apexes {
             [_] => common.len() == 1 && self.faces_at(a).count() + self.faces_at(b).count() > 2,
             [c, d] => {
-                let ends = self.apexes(c, d);
+                let is_joined = |end: u32| self.apexes(c, d).any(|v| v == end);
                 common.len() == 2
-                    && !(ends.contains(&a) && ends.contains(&b))
+                    && !(is_joined(a) && is_joined(b))
                     && !(self.is_border(a) && self.is_border(b))
             }
             _ => false,
@@ -203,7 +216,7 @@ impl Editable {
             first.1.map(|v| if v == b { d } else { v }),
             second.1.map(|v| if v == a { c } else { v }),
         ];
-        let is_edge = c == d || !self.apexes(c, d).is_empty();
+        let is_edge = c == d || self.apexes(c, d).next().is_some();
         if is_edge
             || !turned
                 .iter()

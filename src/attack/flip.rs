@@ -20,7 +20,7 @@ pub fn delaunay(mesh: &Mesh) -> Mesh {
     // The first edge on top.
     open.reverse();
     while let Some([a, b]) = open.pop() {
-        let [c, d] = editable.apexes(a, b)[..] else {
+        let Some([c, d]) = editable.opposite(a, b) else {
             continue;
         };
         if left == 0 || !is_to_flip(&editable, [a, b], [c, d]) || !editable.flip(a, b) {

@@ -15,6 +15,7 @@ mod noise;
 mod optimize;
 mod parts;
 mod quantize;
+mod queue;
 mod remesh;
 mod reorder;
 mod resample;

@@ -40,7 +40,7 @@ fn split_long(editable: &mut Editable, longest: f64) {
         if f64::from_bits(length) <= longest {
             break;
         }
-        let apexes = editable.apexes(a, b);
+        let apexes: Vec<u32> = editable.apexes(a, b).collect();
         let middle = editable.split(a, b);
         for &end in [a, b].iter().chain(&apexes) {
             heap.push(entry(editable, end, middle));
@@ -50,7 +50,7 @@ fn split_long(editable: &mut Editable, longest: f64) {
 
 fn collapse_short(editable: &mut Editable, shortest: f64, longest: f64) {
     for [a, b] in editable.edges() {
-        if editable.apexes(a, b).is_empty() || editable.length(a, b) >= shortest {
+        if editable.apexes(a, b).next().is_none() || editable.length(a, b) >= shortest {
             continue;
         }
         let along = editable.is_crease(a, b, CREASE);
@@ -73,7 +73,7 @@ fn collapse_short(editable: &mut Editable, shortest: f64, longest: f64) {
 /// Flips edges where that brings valences nearer to 6, or 4 on a border.
 fn even_valences(editable: &mut Editable) {
     for [a, b] in editable.edges() {
-        let [c, d] = editable.apexes(a, b)[..] else {
+        let Some([c, d]) = editable.opposite(a, b) else {
             continue;
         };
         if editable.is_crease(a, b, CREASE) {

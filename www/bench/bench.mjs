@@ -8,6 +8,7 @@ import { parseArgs } from "node:util";
 import * as meshmark from "meshmark";
 import { glbFromObj, sharedModel } from "../tests/support.mjs";
 import { startChromium } from "./chromium.mjs";
+import { embedLarge } from "./large.mjs";
 import { prepareNative } from "./native.mjs";
 import { markdown } from "./report.mjs";
 import { torus } from "./torus.mjs";
@@ -16,6 +17,7 @@ import { readStages } from "./stages.mjs";
 const OWNER = "Bench Owner";
 const PASSPHRASE = "a passphrase for benchmarks only";
 const TAG = "BENCH";
+const LARGE_RUNS = 3;
 const SETTLING_MS = 300; // a closed tab's processes take a moment to end; a native run in it was seen to take 20 % longer
 
 const { values: options } = parseArgs({
@@ -46,6 +48,7 @@ const native = prepareNative(options.cli, work);
 const chromium = await startChromium(work);
 const samples = { key: [], embed: [], extract: [] };
 const rankings = [];
+const large = await embedLarge(options.cli, LARGE_RUNS);
 try {
   for (let run = 1; run <= Number(options.runs); run++) {
     for (const command of Object.keys(samples)) {
@@ -67,6 +70,7 @@ writeFileSync(
   markdown({
     samples,
     rankings,
+    large,
     stages: readStages(options.stages),
     modules: options.module.map((path, i) => ({ name: basename(path, "_bg.wasm"), bytes: readFileSync(path), gzipBudget: Number(options["gzip-budget"][i]) })),
     host: { name: host.name, bytes: host.bytes.length, vertices: report.vertices, triangles: meshmark.inspect(host.bytes).triangles },

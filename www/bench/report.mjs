@@ -14,9 +14,10 @@ const COMMANDS = {
  * with `memoryBytes`
  * @param rankings of every run the first and the second call's milliseconds by ranking
  * @param stages what `readStages` gives
+ * @param large by number of vertices, of every run `ms` and `memoryBytes`
  * @param modules each with `name`, `bytes` and `gzipBudget`
  */
-export function markdown({ samples, rankings, stages, modules, host, rustc, chromium }) {
+export function markdown({ samples, rankings, large, stages, modules, host, rustc, chromium }) {
   return `# Performance
 
 \`cargo xtask bench\` wrote this on ${new Date().toISOString().slice(0, 10)}.
@@ -61,12 +62,21 @@ ${stages.map(stageTable).join("\n\n")}
 ## Ranking 50,000 vertices
 
 Milliseconds in Chromium, in a worker, with the mesh's way into the module and the ranking's out of it: the median of
-${rankings.length} runs (least–most). The mesh is a torus with bumps of 50,000 vertices and 100,000 triangles; native figures, of a
+${rankings.length} runs (least–most). The mesh is a bumpy torus of 50,000 vertices and 100,000 triangles; native figures, of a
 mesh of as many, are above.
 
 | | first call | second call |
 |---|--:|--:|
 ${Object.keys(rankings[0][0]).map((ranking) => rankingRow(ranking, rankings)).join("\n")}
+
+## Large models
+
+\`meshmark embed\`, natively and in one thread, of bumpy tori: from the process's start to its end, the median of ${large[0].runs.length} runs
+(least–most), the sizes by turns; and the most memory that any run of it held, the file read and the one written included.
+
+| vertices | seconds | µs a vertex | against the first | MiB | bytes a vertex |
+|--:|--:|--:|--:|--:|--:|
+${large.map((size) => largeRow(size, large[0])).join("\n")}
 
 ## Memory of the module
 
@@ -125,6 +135,21 @@ function moduleRow({ name, bytes, gzipBudget }) {
 function rankingRow(ranking, rankings) {
   const cells = [0, 1].map((call) => cell(statistics(rankings.map((calls) => calls[call][ranking]))));
   return `| ${[ranking, ...cells].join(" | ")} |`;
+}
+
+function largeRow({ vertices, runs }, first) {
+  const times = ({ vertices, runs }) => statistics(runs.map(({ ms }) => ms / vertices));
+  const { median, least, most } = times({ vertices, runs });
+  const seconds = [median, least, most].map((ms) => ((ms * vertices) / 1000).toFixed(2));
+  const bytes = Math.max(...runs.map(({ memoryBytes }) => memoryBytes));
+  return `| ${[
+    count(vertices),
+    `${seconds[0]} (${seconds[1]}–${seconds[2]})`,
+    (1000 * median).toFixed(1),
+    (median / times(first).median).toFixed(2),
+    (bytes / 2 ** 20).toFixed(0),
+    count(Math.round(bytes / vertices)),
+  ].join(" | ")} |`;
 }
 
 function stageTable({ title, stages }) {

@@ -1,0 +1,75 @@
+//! Candidates in the order of their costs, most of them not yet sorted.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Candidates whose costs agree in the exponent and this many bits less of the mantissa wait together.
+const DROPPED_BITS: u32 = 48;
+
+/// An edge as it was when it was queued.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Candidate {
+    /// The bits of what its collapse costs. Costs are not negative, so these are in their order.
+    pub cost: u64,
+    /// Its vertices.
+    pub ends: [u32; 2],
+    /// How often each of them had changed.
+    pub ages: [u32; 2],
+}
+
+/// A priority queue, the least candidate first: a heap of those that are next, which fits into a processor's cache, and the others
+/// in unsorted lists by cost. (One heap of a million vertices' edges misses the cache at nearly every step of every removal.)
+pub(super) struct Queue {
+    /// All candidates of a class up to `class`.
+    next: BinaryHeap<Reverse<Candidate>>,
+    class: u64,
+    /// By class.
+    waiting: BTreeMap<u64, Vec<Candidate>>,
+    num_waiting: usize,
+    /// That many wait at most before those that are out of date are dropped.
+    most_waiting: usize,
+}
+
+impl Queue {
+    /// All of these.
+    pub fn new(candidates: impl Iterator<Item = Candidate>) -> Queue {
+        let mut queue = Queue {
+            next: BinaryHeap::new(),
+            class: 0,
+            waiting: BTreeMap::new(),
+            num_waiting: 0,
+            most_waiting: usize::MAX,
+        };
+        candidates.for_each(|candidate| queue.push(candidate));
+        queue.most_waiting = queue.num_waiting / 4 * 5;
+        queue
+    }
+
+    pub fn push(&mut self, candidate: Candidate) {
+        let class = candidate.cost >> DROPPED_BITS;
+        if class <= self.class {
+            self.next.push(Reverse(candidate));
+        } else {
+            self.waiting.entry(class).or_default().push(candidate);
+            self.num_waiting += 1;
+        }
+    }
+
+    /// The least one; those that are not `current` may be dropped on the way.
+    pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
+        if self.num_waiting > self.most_waiting {
+            for list in self.waiting.values_mut() {
+                list.retain(&current);
+            }
+            self.num_waiting = self.waiting.values().map(Vec::len).sum();
+        }
+        while self.next.is_empty() {
+            let (class, mut list) = self.waiting.pop_first()?;
+            self.num_waiting -= list.len();
+            self.class = class;
+            list.retain(&current);
+            self.next = list.into_iter().map(Reverse).collect();
+        }
+        self.next.pop().map(|Reverse(candidate)| candidate)
+    }
+}

@@ -1,10 +1,10 @@
 //! Candidates in the order of their costs, most of them not yet sorted.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BinaryHeap;
 
-/// Candidates whose costs agree in the exponent and this many bits less of the mantissa wait together.
-const DROPPED_BITS: u32 = 48;
+/// Candidates whose costs agree but for this many of their last bits wait together.
+const DROPPED_BITS: u32 = 50;
 
 /// An edge as it was when it was queued.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,9 +22,9 @@ pub(super) struct Candidate {
 pub(super) struct Queue {
     /// All candidates of a class up to `class`.
     next: BinaryHeap<Reverse<Candidate>>,
-    class: u64,
+    class: usize,
     /// By class.
-    waiting: BTreeMap<u64, Vec<Candidate>>,
+    waiting: Vec<Vec<Candidate>>,
     num_waiting: usize,
     /// That many wait at most before those that are out of date are dropped.
     most_waiting: usize,
@@ -36,7 +36,7 @@ impl Queue {
         let mut queue = Queue {
             next: BinaryHeap::new(),
             class: 0,
-            waiting: BTreeMap::new(),
+            waiting: Vec::new(),
             num_waiting: 0,
             most_waiting: usize::MAX,
         };
@@ -46,27 +46,30 @@ impl Queue {
     }
 
     pub fn push(&mut self, candidate: Candidate) {
-        let class = candidate.cost >> DROPPED_BITS;
+        let class = (candidate.cost >> DROPPED_BITS) as usize;
         if class <= self.class {
             self.next.push(Reverse(candidate));
-        } else {
-            self.waiting.entry(class).or_default().push(candidate);
-            self.num_waiting += 1;
+            return;
         }
+        if class >= self.waiting.len() {
+            self.waiting.resize_with(class + 1, Vec::new);
+        }
+        self.waiting[class].push(candidate);
+        self.num_waiting += 1;
     }
 
     /// The least one; those that are not `current` may be dropped on the way.
     pub fn pop(&mut self, current: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
         if self.num_waiting > self.most_waiting {
-            for list in self.waiting.values_mut() {
+            for list in &mut self.waiting {
                 list.retain(&current);
             }
-            self.num_waiting = self.waiting.values().map(Vec::len).sum();
+            self.num_waiting = self.waiting.iter().map(Vec::len).sum();
         }
         while self.next.is_empty() {
-            let (class, mut list) = self.waiting.pop_first()?;
+            self.class += 1;
+            let mut list = std::mem::take(self.waiting.get_mut(self.class)?);
             self.num_waiting -= list.len();
-            self.class = class;
             list.retain(&current);
             self.next = list.into_iter().map(Reverse).collect();
         }

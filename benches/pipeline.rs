@@ -72,7 +72,7 @@ fn pipeline(criterion: &mut Criterion) {
 fn stages(criterion: &mut Criterion) {
     let mesh = shapes::asteroid(156, 223);
     let edges = Edges::new(&mesh);
-    let boundary: Vec<(u32, u32)> = edges.boundary().collect();
+    let boundary: Vec<(u32, u32)> = edges.boundary(&mesh.triangles).collect();
     let rings = edges.rings(mesh.positions.len());
     let key = key(1);
     let payload = Payload::from_tag("BENCH").expect("a tag");

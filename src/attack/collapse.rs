@@ -2,7 +2,7 @@
 
 use super::editing::Editable;
 use super::queue::{Candidate, Queue};
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
 /// What a method of simplification decides.
@@ -23,62 +23,93 @@ pub(super) enum Until {
     Faces(usize),
 }
 
-/// Collapses edges. Inside, a collapse takes two faces and three edges. Stops earlier where no
-/// collapse is left that keeps the surface's topology and turns no face over. An edge whose cost has risen since it was queued goes
-/// back into the queue; one whose cost has fallen for a change that did not reach its ends waits. O(F log F).
-pub(super) fn collapse(mesh: &Mesh, mut placement: impl Placement, until: Until) -> Mesh {
-    let mut editable = Editable::new(mesh);
-    // Counts a vertex's changes: a candidate of another count is out of date.
-    let mut ages = vec![0u32; mesh.positions.len()];
-    let candidate = |ages: &[u32], cost: f64, a: u32, b: u32| Candidate {
-        cost: cost.to_bits(),
-        ends: [a, b],
-        ages: [a, b].map(|v| ages[v as usize]),
-    };
-    let is_current =
-        |ages: &[u32],
-         Candidate {
-             ends, ages: then, ..
-         }: &Candidate| { ends.map(|v| ages[v as usize]) == *then };
-    let edges = editable.edges();
-    let mut num_edges = edges.len();
-    let (most_edges, most_faces) = match until {
-        Until::WithoutEdges(part) => (((1.0 - part) * num_edges as f64).ceil() as usize, 0),
-        Until::Faces(most) => (0, most),
-    };
-    let mut queue = Queue::new(edges.into_iter().filter_map(|[a, b]| {
-        let (_, cost) = placement.place(&editable, a, b)?;
-        Some(candidate(&ages, cost, a, b))
-    }));
-    while num_edges > most_edges && editable.num_faces() > most_faces {
-        let Some(cheapest) = queue.pop(|candidate| is_current(&ages, candidate)) else {
-            break;
+/// A mesh whose edges collapse. Inside, a collapse takes two faces and three edges. An edge whose cost has risen since it was queued
+/// goes back into the queue; one whose cost has fallen for a change that did not reach its ends waits.
+pub(super) struct Collapse<P> {
+    editable: Editable,
+    placement: P,
+    queue: Queue,
+    /// How often each vertex has changed: a candidate of another count is out of date.
+    ages: Vec<u32>,
+    num_edges: usize,
+    /// At the beginning.
+    all_edges: usize,
+}
+
+impl<P: Placement> Collapse<P> {
+    /// Queues all edges.
+    pub fn new(mesh: &Mesh, placement: impl FnOnce(&Editable) -> P) -> Collapse<P> {
+        let editable = Editable::new(mesh);
+        let placement = placement(&editable);
+        let mut all_edges = 0;
+        let queue = Queue::new(Edges::new(mesh).ends().filter_map(|ends| {
+            all_edges += 1;
+            let (_, cost) = placement.place(&editable, ends[0], ends[1])?;
+            Some(Candidate::new(cost, ends, [0; 2]))
+        }));
+        Collapse {
+            editable,
+            placement,
+            queue,
+            ages: vec![0; mesh.positions.len()],
+            num_edges: all_edges,
+            all_edges,
+        }
+    }
+
+    /// Collapses edges. Stops earlier where no collapse is left that keeps the surface's topology and turns no face over.
+    /// O(F log F).
+    pub fn run(&mut self, until: Until) {
+        let (most_edges, most_faces) = match until {
+            Until::WithoutEdges(part) => {
+                (((1.0 - part) * self.all_edges as f64).ceil() as usize, 0)
+            }
+            Until::Faces(most) => (0, most),
         };
-        if !is_current(&ages, &cheapest) {
-            continue;
-        }
-        let [a, b] = cheapest.ends;
-        let Some((to, cost)) = placement.place(&editable, a, b) else {
-            continue;
-        };
-        if cost.to_bits() > cheapest.cost {
-            queue.push(candidate(&ages, cost, a, b));
-            continue;
-        }
-        let num_faces = editable.num_faces();
-        if !editable.collapse(a, b, to) {
-            continue;
-        }
-        num_edges -= 1 + num_faces - editable.num_faces();
-        placement.merge(a, b);
-        ages[a as usize] += 1;
-        ages[b as usize] += 1;
-        for neighbour in editable.neighbours(a) {
-            let (a, b) = (a.min(neighbour), a.max(neighbour));
-            if let Some((_, cost)) = placement.place(&editable, a, b) {
-                queue.push(candidate(&ages, cost, a, b));
+        while self.num_edges > most_edges && self.editable.num_faces() > most_faces {
+            let ages = &self.ages;
+            let Some(cheapest) = self.queue.pop(|candidate| candidate.is_current(ages)) else {
+                break;
+            };
+            if cheapest.is_current(ages) {
+                self.take(&cheapest);
             }
         }
     }
-    editable.into_mesh()
+
+    /// Collapses an edge if it can be, and still costs what it did.
+    fn take(&mut self, cheapest: &Candidate) {
+        let [a, b] = cheapest.ends;
+        let Some((to, cost)) = self.placement.place(&self.editable, a, b) else {
+            return;
+        };
+        if cost.to_bits() > cheapest.cost {
+            self.push(cost, [a, b]);
+            return;
+        }
+        let num_faces = self.editable.num_faces();
+        if !self.editable.collapse(a, b, to) {
+            return;
+        }
+        self.num_edges -= 1 + num_faces - self.editable.num_faces();
+        self.placement.merge(a, b);
+        self.ages[a as usize] += 1;
+        self.ages[b as usize] += 1;
+        for neighbour in self.editable.neighbours(a) {
+            let ends = [a.min(neighbour), a.max(neighbour)];
+            if let Some((_, cost)) = self.placement.place(&self.editable, ends[0], ends[1]) {
+                self.push(cost, ends);
+            }
+        }
+    }
+
+    fn push(&mut self, cost: f64, ends: [u32; 2]) {
+        let ages = ends.map(|v| self.ages[v as usize]);
+        self.queue.push(Candidate::new(cost, ends, ages));
+    }
+
+    /// What is left.
+    pub fn mesh(&self) -> Mesh {
+        self.editable.mesh()
+    }
 }

@@ -36,7 +36,7 @@ impl Editable {
     }
 
     /// The mesh, without vertices that have no face.
-    pub fn into_mesh(self) -> Mesh {
+    pub fn mesh(&self) -> Mesh {
         let mut names = vec![0; self.positions.len()];
         let mut positions = Vec::new();
         for (v, position) in self.positions.iter().enumerate() {

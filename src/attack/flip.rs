@@ -29,7 +29,7 @@ pub fn delaunay(mesh: &Mesh) -> Mesh {
         left -= 1;
         open.extend([[a, c], [c, b], [b, d], [d, a]]);
     }
-    editable.into_mesh()
+    editable.mesh()
 }
 
 /// Whether the angles across from an edge sum to more than pi, on a surface that is nearly flat there.

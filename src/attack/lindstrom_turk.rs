@@ -1,6 +1,6 @@
 //! Simplification that preserves volume.
 
-use super::collapse::{Placement, Until, collapse};
+use super::collapse::{Collapse, Placement, Until};
 use super::editing::Editable;
 use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
@@ -20,7 +20,9 @@ const WEIGHT: f64 = 0.5;
 /// even triangles. Nothing is remembered of the original. Collapses that would turn a face over, or change the topology, are left
 /// out. O(F log F).
 pub fn simplify_volume(mesh: &Mesh, fraction: f64) -> Mesh {
-    collapse(mesh, Memoryless, Until::WithoutEdges(fraction))
+    let mut collapse = Collapse::new(mesh, |_| Memoryless);
+    collapse.run(Until::WithoutEdges(fraction));
+    collapse.mesh()
 }
 
 struct Memoryless;

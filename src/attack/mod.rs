@@ -46,7 +46,7 @@ pub use reorder::reorder;
 pub use resample::resample;
 pub use scene::into_scene;
 pub use similarity::similarity;
-pub use simplify::{simplify, simplify_to};
+pub use simplify::{simplify, simplify_on, simplify_to};
 pub use smooth::{bilaplacian, smooth, smooth_inside, taubin};
 pub use soup::soup;
 pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};

@@ -15,7 +15,7 @@ pub fn noise(mesh: &Mesh, amplitude: f64, seed: u64) -> Mesh {
         .iter()
         .map(|p| *p + DVec3::new(amount(), amount(), amount()))
         .collect();
-    for (from, _) in Edges::new(mesh).boundary() {
+    for (from, _) in Edges::new(mesh).boundary(&mesh.triangles) {
         positions[from as usize] = mesh.positions[from as usize];
     }
     mesh.with_positions(positions)

@@ -29,7 +29,7 @@ pub fn optimize(mesh: &Mesh, num_faces: usize) -> Mesh {
             break;
         }
     }
-    editable.into_mesh()
+    editable.mesh()
 }
 
 fn sweep(editable: &mut Editable, threshold: f64, num_faces: usize) {

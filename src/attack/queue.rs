@@ -14,7 +14,23 @@ pub(super) struct Candidate {
     /// Its vertices.
     pub ends: [u32; 2],
     /// How often each of them had changed.
-    pub ages: [u32; 2],
+    ages: [u32; 2],
+}
+
+impl Candidate {
+    /// With a cost that is not negative.
+    pub fn new(cost: f64, ends: [u32; 2], ages: [u32; 2]) -> Candidate {
+        Candidate {
+            cost: cost.to_bits(),
+            ends,
+            ages,
+        }
+    }
+
+    /// Whether its vertices have not changed since.
+    pub fn is_current(&self, ages: &[u32]) -> bool {
+        self.ends.map(|v| ages[v as usize]) == self.ages
+    }
 }
 
 /// A priority queue, the least candidate first: a heap of those that are next, which fits into a processor's cache, and the others

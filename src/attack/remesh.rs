@@ -24,7 +24,7 @@ pub fn remesh(mesh: &Mesh, length: f64) -> Mesh {
         even_valences(&mut editable);
         relax(&mut editable, &surface);
     }
-    editable.into_mesh()
+    editable.mesh()
 }
 
 /// The longest edge first: in another order triangles grow ever thinner, and far too many.

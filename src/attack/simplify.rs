@@ -1,6 +1,6 @@
 //! Simplification by quadric error metrics.
 
-use super::collapse::{Placement, Until, collapse};
+use super::collapse::{Collapse, Placement, Until};
 use super::editing::Editable;
 use crate::geometry::Quadric;
 use crate::mesh::Mesh;
@@ -13,20 +13,33 @@ const BORDER_WEIGHT: f64 = 10.0;
 /// area, with their planes through borders. Stops earlier where no collapse is left that keeps the surface's topology and turns
 /// no face over. O(F log F).
 pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
-    collapse(mesh, Planes::new(mesh), Until::WithoutEdges(fraction))
+    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    collapse.run(Until::WithoutEdges(fraction));
+    collapse.mesh()
+}
+
+/// What [`simplify`] leaves at each of some fractions, which ascend: each goes on from the one before.
+pub fn simplify_on(mesh: &Mesh, fractions: &[f64]) -> Vec<Mesh> {
+    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    let next = |&fraction: &f64| {
+        collapse.run(Until::WithoutEdges(fraction));
+        collapse.mesh()
+    };
+    fractions.iter().map(next).collect()
 }
 
 /// The same until no more than `num_faces` are left.
 pub fn simplify_to(mesh: &Mesh, num_faces: usize) -> Mesh {
-    collapse(mesh, Planes::new(mesh), Until::Faces(num_faces))
+    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    collapse.run(Until::Faces(num_faces));
+    collapse.mesh()
 }
 
 /// The planes of each vertex's faces, and those that stand on its borders.
 struct Planes(Vec<Quadric>);
 
 impl Planes {
-    fn new(mesh: &Mesh) -> Planes {
-        let editable = Editable::new(mesh);
+    fn new(mesh: &Mesh, editable: &Editable) -> Planes {
         let mut planes = Planes(vec![Quadric::ZERO; mesh.positions.len()]);
         for &face in &mesh.triangles {
             let normal = editable.normal(face);

@@ -18,7 +18,7 @@ pub fn smooth(mesh: &Mesh, lambda: f64, steps: u32) -> Mesh {
 pub fn smooth_inside(mesh: &Mesh, lambda: f64, steps: u32) -> Mesh {
     let edges = Edges::new(mesh);
     let mut moves = vec![true; mesh.positions.len()];
-    for (from, to) in edges.boundary() {
+    for (from, to) in edges.boundary(&mesh.triangles) {
         moves[from as usize] = false;
         moves[to as usize] = false;
     }

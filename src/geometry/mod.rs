@@ -25,7 +25,7 @@ pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
 pub use linear::conjugate_gradients;
 pub use normal::{face_areas, normal_deviations, vertex_normals};
-pub use orientation::outward;
+pub use orientation::{oriented, outward};
 pub use pose::Pose;
 pub use quadrature::{Quadrature, Sample};
 pub use quadric::{Quadric, collapse_costs};

@@ -9,7 +9,24 @@ const FLAT: f64 = 1e-3;
 /// The triangles of a mesh with consistent winding within each patch of two-faced edges, and each patch turned so that its
 /// signed volume about its own area centroid is positive; flat ones face as most of their area did.
 pub fn outward(mesh: &Mesh) -> Vec<[u32; 3]> {
-    let winding = Edges::new(mesh).winding();
+    outward_along(mesh, &Edges::new(mesh))
+}
+
+/// A mesh that faces outwards, and its edges that have one face, directed as these are.
+pub fn oriented(mesh: &Mesh) -> (Mesh, Vec<(u32, u32)>) {
+    let edges = Edges::new(mesh);
+    let triangles = outward_along(mesh, &edges);
+    let boundary = edges.boundary(&triangles).collect();
+    let positions = mesh.positions.clone();
+    let oriented = Mesh {
+        positions,
+        triangles,
+    };
+    (oriented, boundary)
+}
+
+fn outward_along(mesh: &Mesh, edges: &Edges) -> Vec<[u32; 3]> {
+    let winding = edges.winding();
     let turn = |(&[a, b, c], &flip): (&[u32; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
     let mut triangles: Vec<[u32; 3]> = mesh
         .triangles

@@ -58,6 +58,11 @@ impl Edges {
             .chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
     }
 
+    /// The vertices of every edge, the lower first, in rising order.
+    pub fn ends(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.edges().map(|sides| [sides[0].low, sides[0].high])
+    }
+
     /// Edges with one face only.
     pub fn num_boundary(&self) -> usize {
         self.edges().filter(|sides| sides.len() == 1).count()
@@ -160,17 +165,19 @@ impl Edges {
         }
     }
 
-    /// The edges with one face, in that face's direction.
-    pub fn boundary<'a>(&'a self) -> impl Iterator<Item = (u32, u32)> + 'a {
-        let alone = self
-            .edges()
-            .filter(|sides| sides.len() == 1)
-            .map(|sides| sides[0]);
-        alone.map(|side| {
-            if side.is_ascending() {
-                (side.low, side.high)
+    /// The edges with one face, in that face's direction; `triangles` are the mesh's, some perhaps turned over.
+    pub fn boundary<'a>(
+        &'a self,
+        triangles: &'a [[u32; 3]],
+    ) -> impl Iterator<Item = (u32, u32)> + 'a {
+        let alone = self.edges().filter(|sides| sides.len() == 1);
+        alone.map(|sides| {
+            let (low, high) = (sides[0].low, sides[0].high);
+            let [a, b, c] = triangles[sides[0].face() as usize];
+            if [(a, b), (b, c), (c, a)].contains(&(low, high)) {
+                (low, high)
             } else {
-                (side.high, side.low)
+                (high, low)
             }
         })
     }

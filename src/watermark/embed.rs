@@ -59,7 +59,7 @@ pub fn embed(
             .sum();
         return Err(Error::Unreadable { addresses });
     }
-    let forecast = forecast(&host, &marked, key, payload, progress)?;
+    let forecast = forecast(&host, &marked, &read_back, key, payload, progress)?;
     let report = EmbedReport {
         tag: payload.tag(),
         number: payload.number(),

@@ -76,7 +76,7 @@ fn assert_sound(name: &str, mesh: &Mesh) {
 /// The vertices on boundaries, in an order of their own.
 fn border(mesh: &Mesh) -> Vec<[u64; 3]> {
     let vertices = Edges::new(mesh)
-        .boundary()
+        .boundary(&mesh.triangles)
         .map(|(from, _)| from)
         .collect::<Vec<_>>();
     let mut places: Vec<[u64; 3]> = vertices

@@ -137,7 +137,7 @@ fn cuboid() -> Mesh {
 }
 
 fn volume_pose(mesh: &Mesh) -> Option<Pose> {
-    let boundary: Vec<(u32, u32)> = Edges::new(mesh).boundary().collect();
+    let boundary: Vec<(u32, u32)> = Edges::new(mesh).boundary(&mesh.triangles).collect();
     Pose::of_volume(mesh, &boundary)
 }
 

@@ -71,7 +71,7 @@ fn osveta_prefers_a_spike_to_the_plane_and_the_plane_to_its_border() {
     sheet.positions.iter_mut().for_each(|p| p.z = 0.0);
     sheet.positions[60].z = 0.1;
     let mut border: Vec<u32> = Edges::new(&sheet)
-        .boundary()
+        .boundary(&sheet.triangles)
         .map(|(from, _)| from)
         .collect();
     border.sort_unstable();

@@ -131,7 +131,7 @@ fn smoothing_holds_borders_and_accepts_anything() {
     };
     for method in methods {
         let smoothed = method(&terrain);
-        for (vertex, _) in Edges::new(&terrain).boundary() {
+        for (vertex, _) in Edges::new(&terrain).boundary(&terrain.triangles) {
             let vertex = vertex as usize;
             assert_eq!(smoothed.positions[vertex], terrain.positions[vertex]);
         }

@@ -1,8 +1,8 @@
 //! Spherical coordinates about a barycentre: the distance from it, in units of a scale, is what is quantized; the direction
 //! stays.
 
-use crate::geometry::{Pose, outward};
-use crate::mesh::{Edges, Mesh};
+use crate::geometry::{Pose, oriented};
+use crate::mesh::Mesh;
 use glam::DVec3;
 
 /// Which barycentre, and which scale.
@@ -60,11 +60,7 @@ impl Spherical {
 
 /// The frame of a surface: by volume moments, or by area moments where it encloses next to nothing.
 pub(super) fn frame(mesh: &Mesh) -> Option<Pose> {
-    let oriented = Mesh {
-        positions: mesh.positions.clone(),
-        triangles: outward(mesh),
-    };
-    let boundary: Vec<(u32, u32)> = Edges::new(&oriented).boundary().collect();
+    let (oriented, boundary) = oriented(mesh);
     Pose::of_volume(&oriented, &boundary).or_else(|| Pose::of(&oriented))
 }
 

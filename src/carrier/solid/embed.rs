@@ -6,10 +6,10 @@
 use super::flux::{Placement, Window, clusters, windows};
 use super::measurement::{Axes, axes_of};
 use super::problem::Problem;
-use super::{AREAS_TO_EMBED, Lattice, boundary, cosine, oriented, pitches, pose_of, steps_for};
+use super::{AREAS_TO_EMBED, Lattice, cosine, pitches, pose_of, steps_for};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::detection::Statistic;
-use crate::geometry::{Pose, diagonal, roughness};
+use crate::geometry::{Pose, diagonal, oriented, roughness};
 use crate::mesh::{Edges, Mesh};
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
@@ -45,14 +45,13 @@ pub fn embed(
     mark: &Mark,
     progress: &mut dyn Progress,
 ) -> Result<Vec<DVec3>, CarrierError> {
-    let mesh = oriented(host.mesh);
+    let (mesh, boundary) = oriented(host.mesh);
     let none = |available| CarrierError::TooFewAddresses {
         carrier: Carrier::Solid,
         needed: NEEDED_WINDOWS,
         available,
         vertices: mesh.positions.len(),
     };
-    let boundary = boundary(&mesh);
     let pose = pose_of(&mesh, &boundary).ok_or_else(|| none(0))?;
     step(progress, Stage::Embed, 0.0)?;
     let area = mesh.area() / (pose.size * pose.size);

@@ -5,10 +5,10 @@ use super::field::Field;
 use super::flux::clusters;
 use super::store::{Store, take};
 use super::strength::FAMILIES;
-use super::{AREAS, boundary, oriented, pitches, pose_of, search};
+use super::{AREAS, boundary, pitches, pose_of, search};
 use crate::carrier::Reading;
 use crate::geometry::spectral::{self, InverseFilter};
-use crate::geometry::{Pose, refined};
+use crate::geometry::{Pose, oriented, refined};
 use crate::key::Key;
 use crate::mesh::{Edges, Mesh};
 use crate::progress::{Cancelled, Progress};
@@ -133,8 +133,7 @@ pub struct Surfaces {
 impl Surfaces {
     /// Prepares a mesh.
     pub fn new(mesh: &Mesh) -> Surfaces {
-        let mesh = oriented(mesh);
-        let boundary = boundary(&mesh);
+        let (mesh, boundary) = oriented(mesh);
         let pose = pose_of(&mesh, &boundary);
         let area = mesh.area();
         let in_frame = pose.map_or(0.0, |pose| area / (pose.size * pose.size));

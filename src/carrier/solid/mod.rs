@@ -21,7 +21,7 @@ pub use embed::{NEEDED_WINDOWS, embed};
 pub use measurement::{FIRST_FAMILY, Measurement, Surface, Surfaces};
 
 use crate::code::Symbol;
-use crate::geometry::{Pose, outward};
+use crate::geometry::{Pose, oriented};
 use crate::key::{Key, Prf};
 use crate::mesh::{Edges, Mesh};
 use flux::Placement;
@@ -51,14 +51,6 @@ fn steps_for(rms_rel: f64) -> &'static [f64] {
     &STEPS[first.min(STEPS.len() - 1)..]
 }
 
-/// A mesh with its triangles facing outwards.
-fn oriented(mesh: &Mesh) -> Mesh {
-    Mesh {
-        positions: mesh.positions.clone(),
-        triangles: outward(mesh),
-    }
-}
-
 /// The frame of an oriented mesh with a boundary: by volume moments, or by area moments where it encloses next to nothing.
 fn pose_of(mesh: &Mesh, boundary: &[(u32, u32)]) -> Option<Pose> {
     Pose::of_volume(mesh, boundary).or_else(|| Pose::of(mesh))
@@ -66,7 +58,7 @@ fn pose_of(mesh: &Mesh, boundary: &[(u32, u32)]) -> Option<Pose> {
 
 /// The directed edges of a mesh that have one face.
 fn boundary(mesh: &Mesh) -> Vec<(u32, u32)> {
-    Edges::new(mesh).boundary().collect()
+    Edges::new(mesh).boundary(&mesh.triangles).collect()
 }
 
 /// The pitches for a surface of an area in units of the frame.
@@ -79,8 +71,8 @@ fn pitches(area: f64, areas: std::ops::Range<f64>) -> impl Iterator<Item = f64> 
 /// Windows that a mesh offers to a lattice that lies along its axes, as far as its vertices are free to serve them; a key's
 /// own lattice sees about as many.
 pub fn num_windows(mesh: &Mesh) -> usize {
-    let mesh = oriented(mesh);
-    let Some(pose) = pose_of(&mesh, &boundary(&mesh)) else {
+    let (mesh, boundary) = oriented(mesh);
+    let Some(pose) = pose_of(&mesh, &boundary) else {
         return 0;
     };
     let num = |pitch| {

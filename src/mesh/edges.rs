@@ -29,7 +29,8 @@ impl Side {
     }
 }
 
-/// All sides of all triangles, those of one edge side by side. Construction O(V + F), 12 bytes a side, and as many for a while.
+/// All sides of all triangles, those of one edge side by side, in the order of their faces. Construction O(V + F log D), D the most
+/// faces at a vertex; 12 bytes a side.
 pub struct Edges {
     sides: Vec<Side>,
     num_faces: usize,
@@ -44,11 +45,26 @@ impl Edges {
                 [(a, b), (b, c), (c, a)].map(|(from, to)| Side::new(from, to, face))
             })
         };
-        // By the higher vertex, then by the lower: within an edge the faces are still in order.
-        let num_vertices = mesh.positions.len();
-        let by_high = by_vertex(sides, num_vertices, |side| side.high);
+        // A counting sort by the lower vertex, whose few sides are then sorted where they are.
+        let mut starts = vec![0u32; mesh.positions.len()];
+        for side in sides() {
+            starts[side.low as usize] += 1;
+        }
+        let mut total = 0;
+        for start in &mut starts {
+            (*start, total) = (total, total + *start);
+        }
+        let mut sorted = vec![Side::default(); total as usize];
+        for side in sides() {
+            let slot = &mut starts[side.low as usize];
+            sorted[*slot as usize] = side;
+            *slot += 1;
+        }
+        for sides in sorted.chunk_by_mut(|a, b| a.low == b.low) {
+            sides.sort_unstable_by_key(|side| (side.high, side.direction));
+        }
         Edges {
-            sides: by_vertex(|| by_high.iter().copied(), num_vertices, |side| side.low),
+            sides: sorted,
             num_faces: mesh.triangles.len(),
         }
     }
@@ -109,14 +125,14 @@ impl Edges {
     /// Which faces to turn over so that neighbours across two-faced edges agree, the majority of each patch keeping its
     /// winding. (The majority rather than the sign of a volume: a piece cut from a model must turn as the whole did.)
     pub fn winding(&self) -> Winding {
-        // A face has at most three neighbours, each with whether it is wound the other way.
-        let mut neighbours = vec![[None; 3]; self.num_faces];
+        // A face has at most three neighbours: each one's number, doubled, and 1 more where it is wound the other way.
+        const NONE: u32 = u32::MAX;
+        let mut neighbours = vec![[NONE; 3]; self.num_faces];
         let mut join = |face: u32, neighbour: u32, differ: bool| {
-            let free = neighbours[face as usize]
-                .iter_mut()
-                .find(|slot| slot.is_none());
+            let mut slots = neighbours[face as usize].iter_mut();
+            let free = slots.find(|slot| **slot == NONE);
             free.into_iter()
-                .for_each(|slot| *slot = Some((neighbour, differ)));
+                .for_each(|slot| *slot = neighbour << 1 | u32::from(differ));
         };
         for sides in self.edges() {
             if let [a, b] = sides {
@@ -142,11 +158,14 @@ impl Edges {
                 let flipped = flips[face] == Some(true);
                 patches[face] = num_patches as u32;
                 num_flipped += usize::from(flipped);
-                for (neighbour, differ) in neighbours[face].into_iter().flatten() {
-                    let flip = &mut flips[neighbour as usize];
+                for neighbour in neighbours[face] {
+                    if neighbour == NONE {
+                        continue;
+                    }
+                    let flip = &mut flips[(neighbour >> 1) as usize];
                     if flip.is_none() {
-                        *flip = Some(flipped ^ differ);
-                        patch.push(neighbour);
+                        *flip = Some(flipped ^ (neighbour & 1 == 1));
+                        patch.push(neighbour >> 1);
                     }
                 }
             }
@@ -232,29 +251,6 @@ impl Edges {
             closed,
         }
     }
-}
-
-/// Sides in increasing order of one of their vertices, those of one vertex in the order given: a counting sort.
-fn by_vertex<I: Iterator<Item = Side>>(
-    sides: impl Fn() -> I,
-    num_vertices: usize,
-    vertex: impl Fn(&Side) -> u32,
-) -> Vec<Side> {
-    let mut starts = vec![0u32; num_vertices];
-    for side in sides() {
-        starts[vertex(&side) as usize] += 1;
-    }
-    let mut total = 0;
-    for start in &mut starts {
-        (*start, total) = (total, total + *start);
-    }
-    let mut sorted = vec![Side::default(); total as usize];
-    for side in sides() {
-        let slot = &mut starts[vertex(&side) as usize];
-        sorted[*slot as usize] = side;
-        *slot += 1;
-    }
-    sorted
 }
 
 fn find(parents: &mut [u32], mut face: u32) -> u32 {

@@ -42,7 +42,7 @@ pub(super) struct Queue {
     /// By class.
     waiting: Vec<Vec<Candidate>>,
     num_waiting: usize,
-    /// That many wait at most before those that are out of date are dropped.
+    /// When more wait, those that are out of date are dropped.
     most_waiting: usize,
 }
 
@@ -57,7 +57,7 @@ impl Queue {
             most_waiting: usize::MAX,
         };
         candidates.for_each(|candidate| queue.push(candidate));
-        queue.most_waiting = queue.num_waiting / 4 * 5;
+        queue.most_waiting = (queue.next.len() + queue.num_waiting) / 4 * 5;
         queue
     }
 
@@ -81,6 +81,8 @@ impl Queue {
                 list.retain(&current);
             }
             self.num_waiting = self.waiting.iter().map(Vec::len).sum();
+            // So that it is done rarely even where none is out of date.
+            self.most_waiting = self.most_waiting.max(2 * self.num_waiting);
         }
         while self.next.is_empty() {
             self.class += 1;

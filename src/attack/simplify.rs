@@ -13,14 +13,14 @@ const BORDER_WEIGHT: f64 = 10.0;
 /// area, with their planes through borders. Stops earlier where no collapse is left that keeps the surface's topology and turns
 /// no face over. O(F log F).
 pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
-    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    let mut collapse = by_planes(mesh);
     collapse.run(Until::WithoutEdges(fraction));
     collapse.mesh()
 }
 
 /// What [`simplify`] leaves at each of some fractions, which ascend: each goes on from the one before.
 pub fn simplify_on(mesh: &Mesh, fractions: &[f64]) -> Vec<Mesh> {
-    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    let mut collapse = by_planes(mesh);
     let next = |&fraction: &f64| {
         collapse.run(Until::WithoutEdges(fraction));
         collapse.mesh()
@@ -30,9 +30,13 @@ pub fn simplify_on(mesh: &Mesh, fractions: &[f64]) -> Vec<Mesh> {
 
 /// The same until no more than `num_faces` are left.
 pub fn simplify_to(mesh: &Mesh, num_faces: usize) -> Mesh {
-    let mut collapse = Collapse::new(mesh, |editable| Planes::new(mesh, editable));
+    let mut collapse = by_planes(mesh);
     collapse.run(Until::Faces(num_faces));
     collapse.mesh()
+}
+
+fn by_planes(mesh: &Mesh) -> Collapse<Planes> {
+    Collapse::new(mesh, |editable| Planes::new(mesh, editable))
 }
 
 /// The planes of each vertex's faces, and those that stand on its borders.

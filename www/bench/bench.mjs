@@ -44,11 +44,11 @@ const work = {
   rank: { mesh: torus(200, 250), rankings: ["literal", "integrated", "collapse"] },
 };
 
+const large = await embedLarge(options.cli, LARGE_RUNS);
 const native = prepareNative(options.cli, work);
 const chromium = await startChromium(work);
 const samples = { key: [], embed: [], extract: [] };
 const rankings = [];
-const large = await embedLarge(options.cli, LARGE_RUNS);
 try {
   for (let run = 1; run <= Number(options.runs); run++) {
     for (const command of Object.keys(samples)) {

@@ -80,6 +80,7 @@ fn stages(criterion: &mut Criterion) {
         mesh: &mesh,
         admissible: &Admissible::default(),
         rms_rel: RMS_REL,
+        hidden: false,
         on_top: false,
     };
     let mark = Mark {
@@ -97,7 +98,7 @@ fn stages(criterion: &mut Criterion) {
     });
     group.bench_function("winding", |b| b.iter(|| outward(&mesh)));
     group.bench_function("pose", |b| b.iter(|| Pose::of_volume(&mesh, &boundary)));
-    group.bench_function("roughness", |b| b.iter(|| roughness(&mesh, &rings)));
+    group.bench_function("roughness", |b| b.iter(|| roughness(&mesh, &edges)));
     group.bench_function("undo smoothing, 8 strengths", |b| {
         let filters: Vec<InverseFilter> = (1..=8)
             .map(|number| InverseFilter {

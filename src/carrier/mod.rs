@@ -70,6 +70,8 @@ pub struct Host<'a> {
     pub admissible: &'a Admissible,
     /// Limit of the RMS displacement over all vertices, as a fraction of the diagonal.
     pub rms_rel: f64,
+    /// Whether to stay below that limit where the surface is too smooth to hide it.
+    pub hidden: bool,
     /// Whether another carrier's mark is in the mesh already.
     pub on_top: bool,
 }

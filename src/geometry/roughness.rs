@@ -1,60 +1,64 @@
 //! How rough a surface is, vertex by vertex: where a displacement will not be seen.
 
-use super::vertex_normals;
-use crate::mesh::{Mesh, Rings};
+use super::face_areas;
+use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
-/// V roughnesses: the RMS angle, in radians, by which the vertex normals of a neighbourhood leave a smooth field.
+/// The cosine of the angle, 40 degrees, from which on an edge is a crease: what is beyond it is another side.
+const CREASE: f64 = 0.77;
+
+/// V roughnesses of an oriented mesh: the RMS angle, in radians, by which the normals of the faces about a vertex leave a smooth
+/// field.
 ///
-/// A smooth field is the normals after 6 half-steps of the umbrella operator. Curvature alone does not count, and neither
-/// does a lone crease: of the neighbourhoods that a vertex is in, the smoothest is taken. (Perceptual metrics such as MSDM,
-/// Lavoue et al. 2006, rate distortions by the roughness that masks them.)
-pub fn roughness(mesh: &Mesh, rings: &Rings) -> Vec<f64> {
-    let normals = vertex_normals(mesh);
+/// A smooth field is the normals after 12 half-steps to the neighbours' mean. Curvature alone does not count. Neither does a crease:
+/// nothing is averaged across it, and of the sides that meet at a vertex, the smoothest is taken. (Perceptual metrics such as
+/// MSDM, Lavoue et al. 2006, rate distortions by the roughness that masks them.)
+pub fn roughness(mesh: &Mesh, edges: &Edges) -> Vec<f64> {
+    let normals: Vec<DVec3> = face_areas(mesh)
+        .into_iter()
+        .map(DVec3::normalize_or_zero)
+        .collect();
+    let pairs = edges.pairs().map(|pair| pair.faces);
+    let joined: Vec<[u32; 2]> = pairs
+        .filter(|[a, b]| normals[*a as usize].dot(normals[*b as usize]) > CREASE)
+        .collect();
     let mut smooth = normals.clone();
-    for _ in 0..6 {
-        smooth = half_step(&smooth, rings, DVec3::ZERO);
+    for _ in 0..12 {
+        smooth = half_step(&smooth, &joined, DVec3::ZERO);
     }
     let mut square: Vec<f64> = normals
         .iter()
         .zip(&smooth)
         .map(|(normal, smooth)| normal.distance_squared(smooth.normalize_or_zero()))
         .collect();
-    for _ in 0..6 {
-        square = half_step(&square, rings, 0.0);
+    for _ in 0..12 {
+        square = half_step(&square, &joined, 0.0);
     }
-    for _ in 0..4 {
-        square = least(&square, rings);
+    let mut least = vec![f64::INFINITY; mesh.positions.len()];
+    for (triangle, square) in mesh.triangles.iter().zip(square) {
+        for &vertex in triangle {
+            least[vertex as usize] = least[vertex as usize].min(square);
+        }
     }
-    for _ in 0..6 {
-        square = half_step(&square, rings, 0.0);
-    }
-    square.iter().map(|square| square.sqrt()).collect()
-}
-
-/// The least of each value and its neighbours'.
-fn least(values: &[f64], rings: &Rings) -> Vec<f64> {
-    let of = |v: usize| {
-        let neighbours = rings.neighbours(v).iter().map(|&n| values[n as usize]);
-        neighbours.fold(values[v], f64::min)
-    };
-    (0..values.len()).map(of).collect()
+    least.into_iter().map(f64::sqrt).collect()
 }
 
 /// Half of each value and half of its neighbours' mean.
-fn half_step<T>(values: &[T], rings: &Rings, zero: T) -> Vec<T>
+fn half_step<T>(values: &[T], joined: &[[u32; 2]], zero: T) -> Vec<T>
 where
     T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
 {
-    let step = |v: usize| {
-        let neighbours = rings.neighbours(v);
-        if neighbours.is_empty() {
-            return values[v];
+    let mut sums = vec![(zero, 0u32); values.len()];
+    for &[a, b] in joined {
+        for (face, neighbour) in [(a, b), (b, a)] {
+            let (sum, number) = &mut sums[face as usize];
+            *sum = *sum + values[neighbour as usize];
+            *number += 1;
         }
-        let sum = neighbours
-            .iter()
-            .fold(zero, |sum, &n| sum + values[n as usize]);
-        values[v] * 0.5 + sum * (0.5 / neighbours.len() as f64)
+    }
+    let step = |(&value, (sum, number)): (&T, (T, u32))| match number {
+        0 => value,
+        _ => value * 0.5 + sum * (0.5 / f64::from(number)),
     };
-    (0..values.len()).map(step).collect()
+    values.iter().zip(sums).map(step).collect()
 }

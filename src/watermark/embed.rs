@@ -119,12 +119,15 @@ fn mark(
         let rms_rel = if is_first {
             limit
         } else {
-            limit * Carrier::SHARE_ON_TOP
+            // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
+            let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
+            (below * limit).sqrt() * Carrier::SHARE_ON_TOP
         };
         let host = Host {
             mesh: &mesh,
             admissible: &scene.admissible,
             rms_rel,
+            hidden: options.strength.is_hidden(),
             on_top: !is_first,
         };
         match carrier.embed(&host, &mark, progress) {

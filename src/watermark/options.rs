@@ -23,21 +23,38 @@ impl Default for EmbedOptions {
 
 /// Limit of the RMS displacement over all vertices, as a fraction of the bounding box's diagonal. A carrier that needs
 /// less takes less: RING's step is a fraction of an edge, so on dense meshes it stays far below.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct Strength(f64);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strength {
+    rms_rel: f64,
+    hidden: bool,
+}
 
 impl Strength {
-    /// 0.02 % of the diagonal.
-    pub const SUBTLE: Strength = Strength(0.0002);
-    /// 0.04 % of the diagonal.
-    pub const BALANCED: Strength = Strength(0.0004);
-    /// 0.08 % of the diagonal.
-    pub const STRONG: Strength = Strength(0.0008);
+    /// 0.02 % of the diagonal, or less where that would be seen.
+    pub const SUBTLE: Strength = Strength::hidden(0.0002);
+    /// 0.04 % of the diagonal, or less where that would be seen.
+    pub const BALANCED: Strength = Strength::hidden(0.0004);
+    /// 0.08 % of the diagonal, seen or not.
+    pub const STRONG: Strength = Strength::whole(0.0008);
 
-    /// A strength from 0.00001 to 0.01.
+    const fn hidden(rms_rel: f64) -> Strength {
+        Strength {
+            rms_rel,
+            hidden: true,
+        }
+    }
+
+    const fn whole(rms_rel: f64) -> Strength {
+        Strength {
+            rms_rel,
+            hidden: false,
+        }
+    }
+
+    /// A strength from 0.00001 to 0.01, spent whole whether it is seen or not.
     pub fn new(rms_rel: f64) -> Result<Strength, Error> {
         if (1e-5..=1e-2).contains(&rms_rel) {
-            Ok(Strength(rms_rel))
+            Ok(Strength::whole(rms_rel))
         } else {
             Err(Error::Strength(rms_rel.to_string()))
         }
@@ -55,7 +72,12 @@ impl Strength {
 
     /// The fraction.
     pub fn rms_rel(self) -> f64 {
-        self.0
+        self.rms_rel
+    }
+
+    /// Whether surfaces that are too smooth to hide it are given less.
+    pub fn is_hidden(self) -> bool {
+        self.hidden
     }
 }
 

@@ -262,10 +262,7 @@ fn geometry_roughness_tells_flat_from_rough() {
         .zip(&rough.positions)
         .filter(|(p, _)| p.x >= 0.5)
         .for_each(|(p, q)| *p = *q);
-    let roughness = roughness(
-        &half_rough,
-        &Edges::new(&half_rough).rings(half_rough.positions.len()),
-    );
+    let roughness = roughness(&half_rough, &Edges::new(&half_rough));
     let mean = |side: fn(f64) -> bool| {
         let values: Vec<f64> = half_rough
             .positions
@@ -278,6 +275,28 @@ fn geometry_roughness_tells_flat_from_rough() {
     };
     assert!(mean(|x| x < 0.4) < 0.4 * mean(|x| x > 0.6));
     assert!(roughness.iter().all(|r| (0.0..=2.0).contains(r)));
+}
+
+/// A crease is no roughness, and what is beyond it does not count.
+#[wasm_bindgen_test(unsupported = test)]
+fn geometry_roughness_ends_at_creases() {
+    let mut block = shapes::cuboid(DVec3::new(1.0, 1.0, 1.0), [12, 12, 12]);
+    let rough = meshmark::attack::noise(&block, 0.01, 3);
+    for (p, q) in block.positions.iter_mut().zip(&rough.positions) {
+        if p.z > 0.49 && p.x.abs().max(p.y.abs()) < 0.49 {
+            *p = *q;
+        }
+    }
+    let roughness = roughness(&block, &Edges::new(&block));
+    let of = |side: fn(&DVec3) -> bool| {
+        let found = block.positions.iter().zip(&roughness);
+        let values = found.filter(move |(p, _)| side(p)).map(|(_, r)| *r);
+        values.fold((f64::INFINITY, 0.0), |(low, high), r| {
+            (r.min(low), r.max(high))
+        })
+    };
+    assert!(of(|p| p.z < 0.49).1 < 1e-6, "flat sides and their edges");
+    assert!(of(|p| p.z > 0.49 && p.x.abs().max(p.y.abs()) < 0.4).0 > 0.01);
 }
 
 /// A coarse sphere's chords are too short; arcs half as high as the normals say bring back about half of what is missing.

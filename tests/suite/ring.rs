@@ -19,6 +19,7 @@ fn marked(mesh: &Mesh, admissible: &Admissible) -> Vec<DVec3> {
         mesh,
         admissible,
         rms_rel: 0.0004,
+        hidden: false,
         on_top: false,
     };
     let mark = Mark {
@@ -202,6 +203,7 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
         mesh: &torus,
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
+        hidden: false,
         on_top: false,
     };
     let mark = Mark {

@@ -7,7 +7,7 @@ use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
 use meshmark::carrier::{Carrier, Host, Mark};
 use meshmark::code::{Codeword, SoftSymbol, Symbol};
 use meshmark::detection::Statistic;
-use meshmark::geometry::Distortion;
+use meshmark::geometry::{Distortion, diagonal};
 use meshmark::ignore;
 use meshmark::mesh::{Admissible, Mesh, shapes};
 use std::f64::consts::TAU;
@@ -25,19 +25,27 @@ fn marked(mesh: &Mesh, owner: u8) -> Mesh {
 }
 
 fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
-    let host = Host {
-        mesh,
-        admissible: &Admissible::default(),
-        rms_rel,
-        on_top: false,
-    };
+    marked_as(
+        &Host {
+            mesh,
+            admissible: &Admissible::default(),
+            rms_rel,
+            hidden: false,
+            on_top: false,
+        },
+        owner,
+    )
+}
+
+fn marked_as(host: &Host, owner: u8) -> Mesh {
     let mark = Mark {
         key: &key(owner),
         codeword: &Codeword::new(MESSAGE),
     };
-    let displacement = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap();
-    mesh.with_positions(
-        mesh.positions
+    let displacement = Carrier::Solid.embed(host, &mark, &mut ignore).unwrap();
+    host.mesh.with_positions(
+        host.mesh
+            .positions
             .iter()
             .zip(displacement)
             .map(|(p, d)| *p + d)
@@ -79,6 +87,55 @@ fn solid_marks_a_mesh_within_the_limit() {
         "the unmarked mesh says nothing: {}",
         exponent(&host, 1)
     );
+}
+
+/// A detector gathers the surface in cells for the finest pitch that it tries, here finer than the one that is written: sheets
+/// that share a cell in the one and not in the other show other fluxes.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_writes_what_a_detector_sees_of_thin_sheets() {
+    let mut finned = shapes::cuboid(DVec3::new(1.0, 1.6, 2.4), [8, 13, 20]);
+    for place in [0.7, 0.76, 0.82] {
+        let fin = shapes::cuboid(DVec3::new(0.03, 1.2, 1.8), [1, 8, 12]);
+        let first = finned.positions.len() as u32;
+        let placed = fin.positions.iter().map(|p| *p + DVec3::X * place);
+        finned.positions.extend(placed);
+        let triangles = fin.triangles.iter().map(|t| t.map(|v| v + first));
+        finned.triangles.extend(triangles);
+    }
+    let reached = exponent(&marked_at(&finned, 1, 0.0004), 1);
+    assert!(reached > 150.0, "{reached}");
+}
+
+/// A block, one end of which is rough.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_hides_in_rough_surfaces() {
+    let mut block = shapes::cuboid(DVec3::new(1.3, 1.0, 0.75), [52, 40, 30]);
+    let rough = noise(&block, 0.004, 3);
+    let is_rough = |p: &DVec3| p.x > 0.2;
+    for (p, q) in block.positions.iter_mut().zip(&rough.positions) {
+        if is_rough(p) {
+            *p = *q;
+        }
+    }
+    let host = Host {
+        mesh: &block,
+        admissible: &Admissible::default(),
+        rms_rel: 0.0004,
+        hidden: true,
+        on_top: false,
+    };
+    let result = marked_as(&host, 1);
+    let rms = |side: fn(f64) -> bool| {
+        let pairs = block.positions.iter().zip(&result.positions);
+        let moved: Vec<f64> = pairs
+            .filter(|(p, _)| side(p.x))
+            .map(|(p, q)| p.distance_squared(*q))
+            .collect();
+        (moved.iter().sum::<f64>() / moved.len() as f64).sqrt() / diagonal(&block.positions)
+    };
+    let (flat, rough) = (rms(|x| x < 0.1), rms(|x| x > 0.3));
+    assert!(flat < 0.0001 && rough > 4.0 * flat, "{flat} {rough}");
+    assert!(exponent(&result, 1) > 125.0, "{}", exponent(&result, 1));
 }
 
 /// Each attack with the share of the exponent that has to be left.
@@ -185,6 +242,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         mesh: &sheet,
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
+        hidden: false,
         on_top: false,
     };
     let mark = Mark {

@@ -36,7 +36,7 @@ fn watermark_is_found_by_its_key_and_no_other() {
         (Verdict::Found, Some("ADA-1"))
     );
     assert_eq!(found.number, Some(payload().number()));
-    assert!(found.ln_p < -500.0 && found.agreement > 0.7, "{found:?}");
+    assert!(found.ln_p < -500.0 && found.agreement > 0.6, "{found:?}");
     assert_eq!(
         found, marked.report.read_back,
         "the report is what a detector says"

@@ -4,13 +4,14 @@
 //! RING's embedder), and solves the ridge problem ([`Problem`]). The frame is measured again in every round.
 
 use super::flux::{Placement, Window, clusters, windows};
+use super::freedom::{freedoms, typical};
 use super::measurement::{Axes, axes_of};
 use super::problem::Problem;
-use super::{AREAS_TO_EMBED, Lattice, cosine, pitches, pose_of, steps_for};
+use super::{AREAS, AREAS_TO_EMBED, Lattice, cosine, pitches, pose_of, steps_for};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::detection::Statistic;
-use crate::geometry::{Pose, diagonal, oriented, roughness};
-use crate::mesh::{Edges, Mesh};
+use crate::geometry::{Pose, diagonal, oriented};
+use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
@@ -22,12 +23,6 @@ const LEAST_WEIGHT: f64 = 0.02;
 /// for models in which a few vertices hold up large parts.
 const CLAMPS: [f64; 2] = [3.0, 6.0];
 
-/// The roughness in radians about which a displacement within the limit stays unseen.
-const MASKING: f64 = 0.05;
-/// The range of freedoms: 1 is that of a vertex whose surroundings are as rough as that.
-const FREEDOMS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
-/// What an open boundary leaves of a freedom: its outline is seen against what is behind.
-const BOUNDARY: f64 = 0.5;
 /// Windows without which a mark of 48 bits cannot be read.
 pub const NEEDED_WINDOWS: usize = 100;
 
@@ -56,35 +51,38 @@ pub fn embed(
     step(progress, Stage::Embed, 0.0)?;
     let area = mesh.area() / (pose.size * pose.size);
     let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
-    let freedom = freedoms(&mesh, &boundary);
+    let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
+    let whole = host.rms_rel * diagonal(&mesh.positions);
+    let freedom = freedoms(&mesh, &boundary, host);
     let typical = typical(&freedom);
-    let embedder = Embedder {
-        host,
-        lattice: &Lattice::of(mark.key),
-        mark,
-        limit: host.rms_rel * diagonal(&mesh.positions),
-        freedom,
-        typical,
-        boundary,
-        pose,
-        mesh: &mesh,
-    };
-    let steps = steps_for(host.rms_rel);
     // Where a detector has to scan, the pilots are spent on that, and two thirds of the symbols are left to testify.
     let all = if axes_of(&pose).contains(&Axes::Undetermined) {
         1.5
     } else {
         1.0
     };
+    let mut embedder = Embedder {
+        host,
+        lattice: &Lattice::of(mark.key),
+        mark,
+        finest,
+        limit: whole,
+        freedom,
+        typical,
+        boundary,
+        pose,
+        mesh: &mesh,
+    };
     let mut best = Attempt::default();
+    if host.hidden {
+        embedder.limit = whole * typical;
+        embedder.at_pitches(&candidates, CLAMPS[0], ENOUGH * all, &mut best, progress)?;
+        embedder.limit = whole;
+    }
+    // What is seen is better than no mark.
     for clamp in CLAMPS {
-        for &pitch in &candidates {
-            if best.exponent <= ENOUGH * all {
-                embedder.at_pitch(pitch, steps, clamp, ENOUGH * all, &mut best, progress)?;
-            }
-        }
-        if best.exponent > NEEDED_EXPONENT * all {
-            break;
+        if best.exponent <= NEEDED_EXPONENT * all {
+            embedder.at_pitches(&candidates, clamp, ENOUGH * all, &mut best, progress)?;
         }
     }
     step(progress, Stage::Embed, 1.0)?;
@@ -98,25 +96,6 @@ pub fn embed(
     Ok(best.displacement)
 }
 
-/// How far each of the V vertices may move, beside others: rough surroundings hide more, and outlines less.
-fn freedoms(mesh: &Mesh, boundary: &[(u32, u32)]) -> Vec<f64> {
-    let rings = Edges::new(mesh).rings(mesh.positions.len());
-    let mut freedoms: Vec<f64> = roughness(mesh, &rings)
-        .into_iter()
-        .map(|roughness| (roughness / MASKING).clamp(*FREEDOMS.start(), *FREEDOMS.end()))
-        .collect();
-    for &(vertex, _) in boundary {
-        freedoms[vertex as usize] = (freedoms[vertex as usize] * BOUNDARY).max(*FREEDOMS.start());
-    }
-    freedoms
-}
-
-/// The RMS freedom.
-fn typical(freedoms: &[f64]) -> f64 {
-    let square: f64 = freedoms.iter().map(|freedom| freedom * freedom).sum();
-    (square / freedoms.len() as f64).sqrt()
-}
-
 struct Embedder<'a> {
     host: &'a Host<'a>,
     mark: &'a Mark<'a>,
@@ -125,6 +104,8 @@ struct Embedder<'a> {
     mesh: &'a Mesh,
     boundary: Vec<(u32, u32)>,
     pose: Pose,
+    /// The pitch that a detector gathers clusters for, whichever it reads: sheets that share a cell show other fluxes.
+    finest: f64,
     freedom: Vec<f64>,
     /// RMS freedom.
     typical: f64,
@@ -140,18 +121,34 @@ struct Attempt {
 }
 
 impl Embedder<'_> {
+    /// Embeds with one pitch after the other until the best of all attempts is enough.
+    fn at_pitches(
+        &self,
+        pitches: &[f64],
+        clamp: f64,
+        enough: f64,
+        best: &mut Attempt,
+        progress: &mut dyn Progress,
+    ) -> Result<(), Cancelled> {
+        for &pitch in pitches {
+            if best.exponent <= enough {
+                self.at_pitch(pitch, clamp, enough, best, progress)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Embeds with a pitch, and with smaller steps until the best of all attempts is enough.
     fn at_pitch(
         &self,
         pitch: f64,
-        steps: &[f64],
         clamp: f64,
         enough: f64,
         best: &mut Attempt,
         progress: &mut dyn Progress,
     ) -> Result<(), Cancelled> {
         let placement = self.lattice.placed(DMat3::IDENTITY, pitch);
-        let mut active = windows(&clusters(self.mesh, &self.pose, pitch), &placement);
+        let mut active = windows(&clusters(self.mesh, &self.pose, self.finest), &placement);
         if active.len().min(3 * self.mesh.positions.len()) < NEEDED_WINDOWS {
             return Ok(());
         }
@@ -166,6 +163,7 @@ impl Embedder<'_> {
             window.dither = dither - coset;
         }
         let mut problem = Problem::new(self.mesh, &self.pose, &placement, &active, &self.freedom);
+        let steps = steps_for(self.limit / diagonal(&self.mesh.positions));
         for &step in steps.iter().take(STEPS_TRIED) {
             let attempt = self.attempt(
                 &mut problem,
@@ -273,7 +271,7 @@ impl Embedder<'_> {
         let moved = self.mesh.with_positions(positions.collect());
         let pose =
             pose_of(&moved, &self.boundary).map_or(self.pose, |pose| pose.aligned_with(&self.pose));
-        let now = windows(&clusters(&moved, &pose, placement.pitch), placement);
+        let now = windows(&clusters(&moved, &pose, self.finest), placement);
         let find = |index| {
             now.binary_search_by_key(&index, |window| window.index)
                 .ok()

@@ -10,6 +10,7 @@
 mod embed;
 mod field;
 mod flux;
+mod freedom;
 mod measurement;
 mod problem;
 mod refine;

@@ -9,7 +9,7 @@ export type Payload = string | number;
 
 /**
  * Upper limit of the RMS displacement, as a fraction of the bounding box's diagonal (0.00001 to 0.01), or a preset:
- * `subtle` 0.0002, `balanced` 0.0004, `strong` 0.0008.
+ * `subtle` 0.0002 and `balanced` 0.0004, which take less where a surface is too smooth to hide that; `strong` 0.0008.
  */
 export type Strength = "subtle" | "balanced" | "strong" | number;
 

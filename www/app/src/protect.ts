@@ -18,9 +18,9 @@ import { CARRIERS, count, losses, significant } from "./words";
 type Preset = Extract<Strength, string>;
 
 const STRENGTHS: Record<Preset, string> = {
-  subtle: "For surfaces seen very close. RMS displacement at most 0.02 % of the model’s diagonal.",
-  balanced: "For most models. RMS displacement at most 0.04 % of the model’s diagonal.",
-  strong: "Survives more; look at smooth, shiny surfaces first. At most 0.08 % of the model’s diagonal.",
+  subtle: "For surfaces seen very close. RMS displacement at most 0.02 % of the model’s diagonal, less where it is smooth.",
+  balanced: "For most models. RMS displacement at most 0.04 % of the model’s diagonal, less where it is smooth.",
+  strong: "Survives more; look at smooth, shiny surfaces first. RMS displacement at most 0.08 % of the model’s diagonal.",
 };
 
 /** How long a person must have rested, in milliseconds, before what they chose is tried. */

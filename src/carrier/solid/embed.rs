@@ -74,12 +74,14 @@ pub fn embed(
         mesh: &mesh,
     };
     let mut best = Attempt::default();
-    if host.hidden {
-        embedder.limit = whole * typical;
+    // What is seen is better than no mark: a hidden one gets more of the limit until there is one.
+    let mut share = if host.hidden { typical } else { 1.0 };
+    while share < 1.0 && best.exponent <= NEEDED_EXPONENT * all {
+        embedder.limit = whole * share;
         embedder.at_pitches(&candidates, CLAMPS[0], ENOUGH * all, &mut best, progress)?;
-        embedder.limit = whole;
+        share *= 2.0;
     }
-    // What is seen is better than no mark.
+    embedder.limit = whole;
     for clamp in CLAMPS {
         if best.exponent <= NEEDED_EXPONENT * all {
             embedder.at_pitches(&candidates, clamp, ENOUGH * all, &mut best, progress)?;
@@ -233,11 +235,9 @@ impl Embedder<'_> {
             let tries = if round == 0 { 4 } else { 1 };
             for _ in 0..tries {
                 let solution = problem.solve(&goals, &weights, ridge);
-                let square: f64 = solution.iter().map(|x| x.length_squared()).sum();
-                let rms = (square / solution.len() as f64).sqrt() * self.pose.size * pitch;
                 displacement = solution.into_iter().map(|x| from_lattice * x).collect();
                 // The RMS falls more slowly than the ridge grows.
-                let excess = (rms / self.limit).clamp(0.05, 20.0);
+                let excess = (self.rms(&displacement) / self.limit).clamp(0.05, 20.0);
                 ridge *= excess * excess;
             }
             self.keep_to_limits(&mut displacement, clamp);
@@ -253,10 +253,23 @@ impl Embedder<'_> {
                 *d = d.clamp_length_max(clamp * self.limit * (freedom / self.typical).min(1.0))
             });
         self.host.admissible.project(displacement);
-        let square: f64 = displacement.iter().map(|d| d.length_squared()).sum();
-        let rms = (square / displacement.len() as f64).sqrt();
-        let scale = (self.limit / rms).min(1.0);
+        let scale = (self.limit / self.rms(displacement)).min(1.0);
         displacement.iter_mut().for_each(|d| *d *= scale);
+    }
+
+    /// The RMS of a displacement; where it is to be hidden, as if all vertices were as free as is typical: what rough parts
+    /// cannot use is not for smooth ones to take.
+    fn rms(&self, displacement: &[DVec3]) -> f64 {
+        let square = |(d, freedom): (&DVec3, &f64)| {
+            let share = if self.host.hidden {
+                freedom / self.typical
+            } else {
+                1.0
+            };
+            d.length_squared() / (share * share)
+        };
+        let squares: f64 = displacement.iter().zip(&self.freedom).map(square).sum();
+        (squares / displacement.len() as f64).sqrt()
     }
 
     /// The fluxes of the displaced mesh at the active windows, in its own frame, the axes' signs as the host's: where parts

@@ -107,7 +107,7 @@ fn stages(criterion: &mut Criterion) {
                 gain: 100.0,
             })
             .collect();
-        b.iter(|| spectral::filtered(&mesh.positions, &rings, &filters));
+        b.iter(|| spectral::filtered(&mesh.positions, &rings, &filters, |_| true));
     });
     group.bench_function("SOLID: measure the surface as it is", |b| {
         b.iter(|| solid::Surfaces::new(&mesh).next())

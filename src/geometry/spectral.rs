@@ -3,7 +3,7 @@
 //! Smoothing multiplies the components of a mesh's spectrum by powers of a known factor; as long as none is lost in
 //! rounding, dividing brings them back. The eigenvalues x of the averaging operator W = D^-1 A lie in [-1, 1]; with
 //! kappa = 1 - x, k steps of Laplacian smoothing by lambda leave (1 - lambda kappa)^k. The inverse is limited to a greatest
-//! gain. All filters share the polynomials T_n(W) X, which are computed once. O(degree * (edges + filters * V)).
+//! gain. Vertices that were held are rows of the identity in W: its eigenvalues stay real and within [-1, 1]. All filters share the polynomials T_n(W) X, which are computed once. O(degree * (edges + filters * V)).
 
 use crate::mesh::Rings;
 use glam::DVec3;
@@ -64,13 +64,18 @@ impl InverseFilter {
     }
 }
 
-/// V positions as each filter leaves them.
-pub fn filtered(positions: &[DVec3], rings: &Rings, filters: &[InverseFilter]) -> Vec<Vec<DVec3>> {
+/// V positions as each filter leaves them, where only those vertices moved that `moves` names.
+pub fn filtered(
+    positions: &[DVec3],
+    rings: &Rings,
+    filters: &[InverseFilter],
+    moves: impl Fn(usize) -> bool,
+) -> Vec<Vec<DVec3>> {
     let average = |x: &[DVec3]| -> Vec<DVec3> {
         let mean = |v: usize| {
             let neighbours = rings.neighbours(v);
             let sum: DVec3 = neighbours.iter().map(|&n| x[n as usize]).sum();
-            if neighbours.is_empty() {
+            if neighbours.is_empty() || !moves(v) {
                 x[v]
             } else {
                 sum / neighbours.len() as f64

@@ -61,7 +61,7 @@ pub fn detect(
     step(progress, Stage::Measure, 0.5)?;
     let surfaces = solid::Surfaces::new(&mesh);
     step(progress, Stage::Test, 0.0)?;
-    let solid = surfaces.read(usize::MAX, key, progress)?;
+    let solid = surfaces.read(key, progress)?;
     let conclusion = Reader::new(key, expected).conclude(&solid, &ring);
     step(progress, Stage::Test, 1.0)?;
     Ok(conclusion)

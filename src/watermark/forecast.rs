@@ -72,15 +72,14 @@ pub(super) fn forecast(
         for (&name, suspect) in names.iter().zip(attack(marked)) {
             let done = (forecasts.len() - 1) as f64 / num_names as f64;
             step(progress, Stage::Forecast, done)?;
-            let patience = if name == "smooth" {
-                solid::FIRST_FAMILY
-            } else {
-                1
-            };
             let surfaces = solid::Surfaces::new(&suspect).facing(&host);
-            let solid = surfaces.read(patience, key, &mut |_, _| {
-                progress.report(Stage::Forecast, done)
-            })?;
+            let surfaces = if name == "smooth" {
+                surfaces.first_kind()
+            } else {
+                surfaces.plain()
+            };
+            let mut report = |_, _| progress.report(Stage::Forecast, done);
+            let solid = surfaces.read(key, &mut report)?;
             let mut found = reader.conclude(&solid, &Reading::default());
             if level(&found, payload) != Level::Green {
                 found = reader.conclude(&solid, &ring::Measurement::new(&suspect).read(key));

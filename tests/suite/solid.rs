@@ -2,7 +2,7 @@
 
 use crate::support::fixtures::key;
 use glam::DVec3;
-use meshmark::attack::{noise, quantize, reorder, similarity, smooth};
+use meshmark::attack::{crop, noise, quantize, reorder, similarity, smooth, smooth_inside};
 use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
 use meshmark::carrier::{Carrier, Host, Mark};
 use meshmark::code::{Codeword, SoftSymbol, Symbol};
@@ -175,6 +175,28 @@ fn solid_stays_in_the_shape() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn solid_undoes_smoothing_that_held_boundaries() {
+    let open = crop(&shapes::asteroid(60, 90), 0.3, 3);
+    let result = marked(&open, 1);
+    let whole = exponent(&result, 1);
+    for steps in [9, 27, 45] {
+        let left = exponent(&smooth_inside(&result, 0.1, steps), 1) / whole;
+        assert!(left >= 0.3, "{steps}: {left:.2} of {whole:.0} is left");
+    }
+}
+
+/// There it moves vertices farther than a step is wide, and takes a third of the area.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_undoes_smoothing_of_few_triangles() {
+    let result = marked(&shapes::low_poly(), 1);
+    let whole = exponent(&result, 1);
+    for steps in [7, 14, 28] {
+        let left = exponent(&smooth(&result, 0.1, steps), 1) / whole;
+        assert!(left >= 0.3, "{steps}: {left:.2} of {whole:.0} is left");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn solid_marks_of_two_keys_stay_beside_each_other() {
     let twice = marked(&marked(&rock(), 1), 2);
     assert!(
@@ -187,7 +209,7 @@ fn solid_marks_of_two_keys_stay_beside_each_other() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_measurement_is_its_bytes() {
-    let measurement = Measurement::new(&shapes::torus_knot(40, 10));
+    let measurement = Measurement::new(&shapes::torus_knot(100, 24));
     let bytes = measurement.to_bytes();
     assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Some(&measurement));
     assert_eq!(Measurement::from_bytes(&bytes[..bytes.len() - 1]), None);
@@ -259,7 +281,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
     );
 }
 
-/// What nobody measured is refused: surfaces out of order or twice, which would be tests that are not charged, and cells so far
+/// What nobody measured is refused: surfaces out of order or twice, or at three pitches, which would be tests that are not charged, and cells so far
 /// apart that a lattice between them would not fit in memory.
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_refuses_forged_measurements() {
@@ -276,11 +298,13 @@ fn solid_refuses_forged_measurements() {
         None,
         "the suspect is missing"
     );
-    let mut pitch = bytes.clone();
-    pitch[4..12].copy_from_slice(&0.17f64.to_le_bytes());
-    assert_eq!(Measurement::from_bytes(&pitch), None, "an unknown pitch");
-    // Origin and axes, pitch, units; then two clusters, the second in a cell far from the first.
-    let mut far = bytes[..20].to_vec();
+    for pitches in [0, 0b111, 0b100_0001] {
+        let mut forged = bytes.clone();
+        forged[4] = pitches;
+        assert_eq!(Measurement::from_bytes(&forged), None, "{pitches} pitches");
+    }
+    // Origin and axes, pitches, units; then two clusters, the second in a cell far from the first.
+    let mut far = bytes[..13].to_vec();
     far.extend(2u32.to_le_bytes());
     let cluster = [0u8; 13];
     far.extend([&[0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x02][..], &cluster].concat());

@@ -4,8 +4,8 @@
 use super::field::Field;
 use super::flux::clusters;
 use super::store::{Store, take};
-use super::strength::FAMILIES;
-use super::{AREAS, boundary, pitches, pose_of, search};
+use super::strength::{FAMILIES, FIRST_FAMILY, HELD_FAMILY, OTHER_FAMILIES};
+use super::{AREAS, MOST_PITCHES, PITCHES, boundary, pitches, pose_of, search};
 use crate::carrier::Reading;
 use crate::geometry::spectral::{self, InverseFilter};
 use crate::geometry::{Pose, oriented, refined};
@@ -38,14 +38,29 @@ pub fn axes_of(pose: &Pose) -> [Axes; 2] {
     [apart(x, y), apart(y, z)]
 }
 
-/// A filtered surface that is so many times larger has spikes, and is left out.
-const SPIKY: f64 = 1.6;
-
 /// Meshes with fewer triangles than this may be simplified ones, whose chords cut off a noticeable part of the shape.
 const COARSE: usize = 15_000;
 
+/// On meshes with fewer triangles than this, smoothing moves vertices far: it takes up to half of the area, and what is undone
+/// changes much with the strength.
+const FEW: usize = 4_000;
+
+/// A filtered surface that is so many times larger than the suspect has spikes, and is left out.
+const SPIKY: f64 = 1.6;
+
+/// The same for meshes of few triangles.
+const SPIKY_IF_FEW: f64 = 3.0;
+
+/// Shares of vertices on boundaries from which on it matters whether a smoothing held them.
+const MANY_ON_BOUNDARIES: f64 = 0.02;
+
 /// What a suspect is measured in.
-const STAGES: usize = 4;
+const STAGES: usize = 5;
+
+/// The pitches that a surface of an area is read at, the finest first.
+fn pitches_of(area: f64, pose: &Pose) -> Vec<f64> {
+    pitches(area / (pose.size * pose.size), AREAS).collect()
+}
 
 /// How a surface came from the suspect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,13 +79,16 @@ pub struct Surface {
     pub(super) origin: Origin,
     /// The first and the second axis; the second and the third.
     pub(super) axes: [Axes; 2],
+    /// The pitches that it is read at.
+    pub(super) pitches: Vec<f64>,
+    /// Fine enough for all of them.
     pub(super) store: Store,
-    /// For each pitch that it is read at, where it was made ready for many keys.
+    /// For each pitch, where it was made ready for many keys.
     pub(super) fields: Vec<Field>,
 }
 
 impl Surface {
-    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, and its store.
+    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store.
     fn read(bytes: &mut &[u8]) -> Option<Surface> {
         let origin = match take(bytes)? {
             [0, 0] => Origin::Suspect,
@@ -87,21 +105,20 @@ impl Surface {
                 .get(usize::from(byte))
                 .copied()
         };
+        let axes = [axes(first)?, axes(second)?];
+        let [bits] = take(bytes)?;
+        let is_read = |(number, pitch): (u8, f64)| (bits >> number & 1 != 0).then_some(pitch);
+        let pitches: Vec<f64> = (0..).zip(PITCHES).filter_map(is_read).collect();
+        // No more are charged: forged evidence may not be read at more.
+        let is_sound = pitches.len() <= MOST_PITCHES && bits >> PITCHES.len() == 0;
+        let finest = pitches.first().filter(|_| is_sound)?;
         Some(Surface {
             origin,
-            axes: [axes(first)?, axes(second)?],
-            store: Store::read(bytes)?,
+            axes,
+            store: Store::read(bytes, *finest)?,
+            pitches,
             fields: Vec::new(),
         })
-    }
-
-    /// The pitches that a suspect is read at, if this is the suspect.
-    pub(super) fn pitches(&self) -> Vec<f64> {
-        let clusters = self.store.clusters();
-        let area = clusters.iter().map(|cluster| cluster.weight).sum();
-        pitches(area, AREAS)
-            .filter(|pitch| *pitch >= self.store.pitch)
-            .collect()
     }
 
     /// Appends the bytes.
@@ -112,6 +129,8 @@ impl Surface {
             Origin::Filtered { family, node } => [family + 2, node],
         });
         bytes.extend(self.axes.map(|axes| axes as u8));
+        let bit = |(number, pitch)| u8::from(self.pitches.contains(pitch)) << number;
+        bytes.push((0..).zip(&PITCHES).map(bit).sum());
         self.store.write(bytes);
     }
 }
@@ -123,10 +142,12 @@ pub struct Surfaces {
     pose: Option<Pose>,
     /// The frame whose axes are followed, where it is known.
     facing: Option<Pose>,
-    pitch: f64,
+    /// The suspect's.
+    pitches: Vec<f64>,
     area: f64,
-    /// What is measured next: the suspect, the refined one, the first family, the others.
+    /// What is measured next: the suspect, the refined one, the first family, the others, those that held boundaries.
     next: usize,
+    stages: usize,
     ready: VecDeque<Surface>,
 }
 
@@ -136,16 +157,16 @@ impl Surfaces {
         let (mesh, boundary) = oriented(mesh);
         let pose = pose_of(&mesh, &boundary);
         let area = mesh.area();
-        let in_frame = pose.map_or(0.0, |pose| area / (pose.size * pose.size));
-        let finest = pitches(in_frame, AREAS).reduce(f64::min);
+        let pitches = pose.map_or(Vec::new(), |pose| pitches_of(area, &pose));
         Surfaces {
             boundary,
             mesh,
-            pose: pose.filter(|_| finest.is_some()),
+            pose: pose.filter(|_| !pitches.is_empty()),
             facing: None,
-            pitch: finest.unwrap_or(0.0),
+            pitches,
             area,
             next: 0,
+            stages: STAGES,
             ready: VecDeque::new(),
         }
     }
@@ -158,16 +179,42 @@ impl Surfaces {
         }
     }
 
-    /// The surface as the filters of some families leave it.
+    fn has_few(&self) -> bool {
+        self.mesh.triangles.len() < FEW
+    }
+
+    /// For each vertex, whether it lies on a boundary.
+    fn on_boundary(&self) -> Vec<bool> {
+        let mut lies = vec![false; self.mesh.positions.len()];
+        for &(from, to) in &self.boundary {
+            lies[from as usize] = true;
+            lies[to as usize] = true;
+        }
+        lies
+    }
+
+    fn has_many_on_boundaries(&self) -> bool {
+        let lies = self.on_boundary();
+        let num = lies.iter().filter(|lies| **lies).count();
+        num as f64 >= MANY_ON_BOUNDARIES * lies.len() as f64
+    }
+
+    /// The surface as the filters of some families leave it, all or none of which held boundaries.
     fn filtered(&self, families: std::ops::Range<usize>) -> Vec<(Origin, Cow<'_, Mesh>)> {
-        let nodes = families.flat_map(|family| {
-            (0..FAMILIES[family].len()).map(move |node| (family as u8, node as u8))
+        let has_few = self.has_few();
+        let nodes = families.clone().flat_map(|family| {
+            let nodes = FAMILIES[family].nodes(has_few);
+            nodes.map(move |node| (family as u8, node as u8))
         });
         let nodes: Vec<(u8, u8)> = nodes.collect();
         let filter = |&(family, node): &(u8, u8)| FAMILIES[usize::from(family)].filter(node.into());
         let filters: Vec<InverseFilter> = nodes.iter().map(filter).collect();
         let rings = Edges::new(&self.mesh).rings(self.mesh.positions.len());
-        let filtered = spectral::filtered(&self.mesh.positions, &rings, &filters);
+        let is_held = FAMILIES[families].iter().all(|family| family.is_held);
+        let on_boundary = self.on_boundary();
+        let filtered = spectral::filtered(&self.mesh.positions, &rings, &filters, |vertex| {
+            !(is_held && on_boundary[vertex])
+        });
         let surface = |((family, node), positions): ((u8, u8), Vec<DVec3>)| {
             let mesh = self.mesh.with_positions(positions);
             (Origin::Filtered { family, node }, Cow::Owned(mesh))
@@ -183,16 +230,26 @@ impl Surfaces {
                 vec![(Origin::Refined, Cow::Owned(refined(&self.mesh)))]
             }
             1 => Vec::new(),
-            2 => self.filtered(0..1),
-            _ => self.filtered(1..FAMILIES.len()),
+            2 => self.filtered(FIRST_FAMILY),
+            3 => self.filtered(OTHER_FAMILIES),
+            _ if self.has_many_on_boundaries() => self.filtered(HELD_FAMILY),
+            _ => Vec::new(),
         };
-        let largest = SPIKY * self.area;
+        let largest = self.area * if self.has_few() { SPIKY_IF_FEW } else { SPIKY };
         let in_own_frame = |(origin, mesh): (Origin, Cow<Mesh>)| {
             let boundary = match origin {
                 Origin::Refined => Cow::Owned(boundary(&mesh)),
                 _ => Cow::Borrowed(&self.boundary),
             };
-            let own = pose_of(&mesh, &boundary).filter(|_| mesh.area() <= largest)?;
+            let area = mesh.area();
+            let own = pose_of(&mesh, &boundary).filter(|_| area <= largest)?;
+            // Where there are many triangles it is noise that makes a filtered surface larger.
+            let pitches = if self.has_few() {
+                pitches_of(area, &own)
+            } else {
+                self.pitches.clone()
+            };
+            let finest = *pitches.first()?;
             let own = own.aligned_with(self.facing.as_ref().unwrap_or(pose));
             Some(Surface {
                 origin,
@@ -200,7 +257,8 @@ impl Surfaces {
                     Some(_) => [Axes::Distinct; 2],
                     None => axes_of(&own),
                 },
-                store: Store::new(&clusters(&mesh, &own, self.pitch), self.pitch),
+                pitches,
+                store: Store::new(&clusters(&mesh, &own, finest), finest),
                 fields: Vec::new(),
             })
         };
@@ -213,7 +271,7 @@ impl Iterator for Surfaces {
 
     fn next(&mut self) -> Option<Surface> {
         let pose = self.pose?;
-        while self.ready.is_empty() && self.next < STAGES {
+        while self.ready.is_empty() && self.next < self.stages {
             self.ready = self.measure(self.next, &pose);
             self.next += 1;
         }
@@ -240,11 +298,10 @@ impl Measurement {
     /// What is between the table's points is interpolated, with an RMS error below 2 % of a quantizer's step. No key has a part in
     /// that: the bound of what is read is exact.
     pub fn for_many_keys(mut self) -> Measurement {
-        let pitches = self.surfaces.first().map_or(Vec::new(), Surface::pitches);
         for surface in &mut self.surfaces {
             let clusters = surface.store.clusters();
             let field = |&pitch: &f64| Field::new(&clusters, pitch);
-            surface.fields = pitches.iter().map(field).collect();
+            surface.fields = surface.pitches.iter().map(field).collect();
         }
         self
     }
@@ -269,11 +326,9 @@ impl Measurement {
         while !bytes.is_empty() {
             surfaces.push(Surface::read(&mut bytes)?);
         }
-        // Each surface is charged once, and all are read at the suspect's pitches: forged evidence may not say otherwise.
+        // Each surface is charged once: forged evidence may not say otherwise.
         let is_first = |surface: &Surface| surface.origin == Origin::Suspect;
-        let in_order = |pair: &[Surface]| {
-            pair[0].origin < pair[1].origin && pair[0].store.pitch == pair[1].store.pitch
-        };
+        let in_order = |pair: &[Surface]| pair[0].origin < pair[1].origin;
         let is_sound = surfaces.first().is_none_or(is_first) && surfaces.windows(2).all(in_order);
         is_sound.then_some(Measurement { surfaces })
     }
@@ -288,17 +343,19 @@ impl FromIterator<Surface> for Measurement {
     }
 }
 
-/// Surfaces until the first kind of smoothing has been undone.
-pub const FIRST_FAMILY: usize = 2 + FAMILIES[0].len();
-
 impl Surfaces {
-    /// The soft symbols of a key from up to so many surfaces: no more are measured than it takes to find its mark.
-    pub fn read(
-        self,
-        most: usize,
-        key: &Key,
-        progress: &mut dyn Progress,
-    ) -> Result<Reading, Cancelled> {
-        search::read(&mut self.take(most).map(Cow::Owned), key, progress)
+    /// Only the suspect as it is.
+    pub fn plain(self) -> Surfaces {
+        Surfaces { stages: 1, ..self }
+    }
+
+    /// Only what undoes nothing, chords or the first kind of smoothing.
+    pub fn first_kind(self) -> Surfaces {
+        Surfaces { stages: 3, ..self }
+    }
+
+    /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark.
+    pub fn read(self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
+        search::read(&mut self.map(Cow::Owned), key, progress)
     }
 }

@@ -19,7 +19,7 @@ mod store;
 mod strength;
 
 pub use embed::{NEEDED_WINDOWS, embed};
-pub use measurement::{FIRST_FAMILY, Measurement, Surface, Surfaces};
+pub use measurement::{Measurement, Surface, Surfaces};
 
 use crate::code::Symbol;
 use crate::geometry::{Pose, oriented};
@@ -39,6 +39,9 @@ const AREAS_TO_EMBED: std::ops::Range<f64> = 800.0..1810.0;
 
 /// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
 const AREAS: std::ops::Range<f64> = 680.0..2150.0;
+
+/// Pitches that a surface is read at, at most: no three of them have the area between these bounds.
+const MOST_PITCHES: usize = 2;
 
 /// Steps of the quantizer: the displacement of a surface, in units of the frame, that takes a window of about a squared pitch
 /// of it from one symbol to the same symbol again. Each is smaller than the one before by a factor of sqrt 2.

@@ -10,7 +10,7 @@ use super::flux::{Cluster, Placement, Window, windows};
 use super::measurement::{Axes, Origin, Surface};
 use super::refine::{View, refine};
 use super::strength::{FAMILIES, blend, weights};
-use super::{Lattice, STEPS, cosine};
+use super::{Lattice, MOST_PITCHES, STEPS, cosine};
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
 use crate::detection::Statistic;
@@ -47,25 +47,20 @@ pub fn read<'a>(
     };
     let axes = suspect.axes;
     let mut search = Search::new(&lattice, suspect);
-    let num_surfaces = 2 + FAMILIES.iter().map(|family| family.len()).sum::<usize>();
     let is_undetermined = axes.contains(&Axes::Undetermined);
     let share = if is_undetermined {
         SHARE_BEFORE_SCAN
     } else {
         1.0
     };
-    let mut looked = 1;
+    let mut looked = 0.0;
     while !search.is_sure() {
-        step(
-            progress,
-            Stage::Test,
-            share * looked as f64 / num_surfaces as f64,
-        )?;
+        step(progress, Stage::Test, share * looked)?;
         let Some(surface) = surfaces.next() else {
             break;
         };
+        looked = part_until(surface.origin);
         search.look(surface);
-        looked += 1;
     }
     if is_undetermined && !search.is_sure() {
         search.scan(axes, progress)?;
@@ -73,12 +68,30 @@ pub fn read<'a>(
     Ok(search.conclude())
 }
 
+/// Nodes of all families.
+fn num_nodes() -> usize {
+    FAMILIES.iter().map(|family| family.len()).sum()
+}
+
+/// How much of all that can be looked at there is up to a surface.
+fn part_until(origin: Origin) -> f64 {
+    let place = match origin {
+        Origin::Suspect => 0,
+        Origin::Refined => 1,
+        Origin::Filtered { family, node } => {
+            let before = FAMILIES[..usize::from(family)].iter();
+            2 + before.map(|family| family.len()).sum::<usize>() + usize::from(node)
+        }
+    };
+    (place + 1) as f64 / (2 + num_nodes()) as f64
+}
+
 /// A measured surface, as the pilots see it.
 struct Node<'a> {
     surface: Cow<'a, Surface>,
     clusters: OnceCell<Vec<Cluster>>,
-    /// For each pitch and turn.
-    pilots: Vec<Vec<Window>>,
+    /// For each of the surface's pitches, for each turn.
+    pilots: Vec<Vec<Vec<Window>>>,
 }
 
 impl<'a> Node<'a> {
@@ -92,6 +105,12 @@ impl<'a> Node<'a> {
 
     fn clusters(&self) -> &[Cluster] {
         self.clusters.get_or_init(|| self.surface.store.clusters())
+    }
+
+    /// The pilots' windows for each turn, if the surface is read at a pitch.
+    fn pilots(&self, pitch: f64) -> Option<&[Vec<Window>]> {
+        let place = self.surface.pitches.iter().position(|own| *own == pitch)?;
+        self.pilots.get(place).map(Vec::as_slice)
     }
 
     fn field(&self, pitch: f64) -> Option<&Field> {
@@ -133,7 +152,6 @@ struct Candidate {
 
 struct Search<'a> {
     lattice: &'a Lattice,
-    pitches: Vec<f64>,
     turns: Vec<DMat3>,
     nodes: Vec<Node<'a>>,
     num_windows: usize,
@@ -149,7 +167,6 @@ impl<'a> Search<'a> {
     fn new(lattice: &'a Lattice, suspect: Cow<'a, Surface>) -> Search<'a> {
         let mut search = Search {
             lattice,
-            pitches: suspect.pitches(),
             turns: turns(suspect.axes != [Axes::Distinct; 2]),
             nodes: Vec::new(),
             num_windows: 0,
@@ -173,8 +190,10 @@ impl<'a> Search<'a> {
     /// Looks at a surface, and at those between it and the last of its family.
     fn look(&mut self, surface: Cow<'a, Surface>) {
         let origin = surface.origin;
+        let pitches = surface.pitches.clone();
         let mut node = Node::new(surface);
-        for &pitch in &self.pitches {
+        for &pitch in &pitches {
+            let mut of_pitch = Vec::new();
             for &turn in &self.turns {
                 let is_pilot = |window: &mut Window| {
                     let (dither, symbol) = self.lattice.at(window.index);
@@ -184,68 +203,78 @@ impl<'a> Search<'a> {
                 let placement = self.lattice.placed(turn, pitch);
                 let (pilots, num_windows) = node.windows(&placement, is_pilot);
                 self.num_windows = self.num_windows.max(num_windows);
-                node.pilots.push(pilots);
+                of_pitch.push(pilots);
             }
+            node.pilots.push(of_pitch);
         }
         self.nodes.push(node);
-        let last = self.nodes.len() - 1;
-        let Origin::Filtered { family, node } = origin else {
-            return self.consider(&[last], &[0.0], 0.0);
-        };
-        let of_family = |node: &usize| match self.nodes[*node].surface.origin {
-            Origin::Suspect => true,
-            Origin::Refined => false,
-            Origin::Filtered { family: other, .. } => other == family,
-        };
-        let strength_of = |node: &usize| match self.nodes[*node].surface.origin {
-            Origin::Filtered { family, node } => {
-                FAMILIES[usize::from(family)].strength(node.into())
+        for pitch in pitches {
+            match origin {
+                Origin::Filtered { family, .. } => self.look_between(family, pitch),
+                _ => self.consider(&[self.nodes.len() - 1], &[0.0], pitch, 0.0),
             }
-            _ => 0.0,
-        };
-        let nodes: Vec<usize> = (0..=last).filter(of_family).collect();
-        let strengths: Vec<f64> = nodes.iter().map(strength_of).collect();
-        let high = FAMILIES[usize::from(family)].strength(node.into());
-        let low = strengths[strengths.len() - 2];
-        for part in 1..=STRENGTHS {
-            let share = part as f64 / STRENGTHS as f64;
-            self.consider(&nodes, &strengths, low + (high - low) * share);
         }
     }
 
-    /// Weighs all turns, pitches and steps of a surface of some strength.
-    fn consider(&mut self, nodes: &[usize], strengths: &[f64], strength: f64) {
+    /// Looks at what lies between the last two surfaces of a family that are read at a pitch: the suspect is the first.
+    fn look_between(&mut self, family: u8, pitch: f64) {
+        let strength_of = |node: &Node| match node.surface.origin {
+            Origin::Suspect => Some(0.0),
+            Origin::Filtered {
+                family: other,
+                node,
+            } if other == family => Some(FAMILIES[usize::from(family)].strength(node.into())),
+            _ => None,
+        };
+        let of_pitch = |(number, node): (usize, &Node)| {
+            let strength = strength_of(node).filter(|_| node.pilots(pitch).is_some());
+            strength.map(|strength| (number, strength))
+        };
+        let (nodes, strengths): (Vec<usize>, Vec<f64>) =
+            self.nodes.iter().enumerate().filter_map(of_pitch).unzip();
+        match strengths[..] {
+            [.., low, high] => {
+                for part in 1..=STRENGTHS {
+                    let share = part as f64 / STRENGTHS as f64;
+                    let strength = low + (high - low) * share;
+                    self.consider(&nodes, &strengths, pitch, strength);
+                }
+            }
+            [only] => self.consider(&nodes, &strengths, pitch, only),
+            [] => {}
+        }
+    }
+
+    /// Weighs all turns and steps of a surface of some strength.
+    fn consider(&mut self, nodes: &[usize], strengths: &[f64], pitch: f64, strength: f64) {
         let parts = weights(strengths, strength);
-        let mut place = 0;
-        for pitch in self.pitches.clone() {
-            for turn in self.turns.clone() {
-                let lists = parts.iter().map(|&(part, weight)| {
-                    (self.nodes[nodes[part]].pilots[place].as_slice(), weight)
-                });
-                let pilots = blend(lists);
-                place += 1;
-                let best = if nodes == [0] {
-                    &mut self.own
-                } else {
-                    &mut self.undone
-                };
-                for step in STEPS {
-                    let evidence = evidence(&pilots, step / pitch);
-                    let place = best.partition_point(|other| other.evidence >= evidence);
-                    if place < FOLLOWED {
-                        let candidate = Candidate {
-                            evidence,
-                            nodes: nodes.to_vec(),
-                            strengths: strengths.to_vec(),
-                            view: View {
-                                placement: self.lattice.placed(turn, pitch),
-                                strength,
-                            },
-                            step,
-                        };
-                        best.insert(place, candidate);
-                        best.truncate(FOLLOWED);
-                    }
+        for (number, &turn) in self.turns.iter().enumerate() {
+            let lists = parts.iter().filter_map(|&(part, weight)| {
+                let pilots = self.nodes[nodes[part]].pilots(pitch)?;
+                Some((pilots[number].as_slice(), weight))
+            });
+            let pilots = blend(lists);
+            let best = if nodes == [0] {
+                &mut self.own
+            } else {
+                &mut self.undone
+            };
+            for step in STEPS {
+                let evidence = evidence(&pilots, step / pitch);
+                let place = best.partition_point(|other| other.evidence >= evidence);
+                if place < FOLLOWED {
+                    let candidate = Candidate {
+                        evidence,
+                        nodes: nodes.to_vec(),
+                        strengths: strengths.to_vec(),
+                        view: View {
+                            placement: self.lattice.placed(turn, pitch),
+                            strength,
+                        },
+                        step,
+                    };
+                    best.insert(place, candidate);
+                    best.truncate(FOLLOWED);
                 }
             }
         }
@@ -253,10 +282,11 @@ impl<'a> Search<'a> {
 
     /// Turns the suspect about the axes that its frame cannot tell apart.
     fn scan(&mut self, axes: [Axes; 2], progress: &mut dyn Progress) -> Result<(), Cancelled> {
-        let share = (1.0 - SHARE_BEFORE_SCAN) / self.pitches.len() as f64;
-        for (number, &pitch) in self.pitches.iter().enumerate() {
+        let suspect = &self.nodes[0];
+        let pitches = &suspect.surface.pitches;
+        let share = (1.0 - SHARE_BEFORE_SCAN) / pitches.len() as f64;
+        for (number, &pitch) in pitches.iter().enumerate() {
             let start = SHARE_BEFORE_SCAN + share * number as f64;
-            let suspect = &self.nodes[0];
             let field = match suspect.field(pitch) {
                 Some(field) => Cow::Borrowed(field),
                 None => Cow::Owned(Field::new(suspect.clusters(), pitch)),
@@ -323,19 +353,14 @@ impl<'a> Search<'a> {
     }
 
     fn conclude(&self) -> Reading {
-        let num_views = self.pitches.len() * self.turns.len() * STEPS.len();
-        let num_undone = 1 + FAMILIES
-            .iter()
-            .map(|family| STRENGTHS * family.len())
-            .sum::<usize>();
+        let num_views = |num_pitches| num_pitches * self.turns.len() * STEPS.len();
+        let num_own = num_views(self.nodes[0].surface.pitches.len());
+        let num_undone = num_views(MOST_PITCHES) * (1 + STRENGTHS * num_nodes());
         let declared = |node: &Node, placement: &Placement| node.windows(placement, |_| true).0;
         // Small moves show in differences, where interpolation would show as well.
         let exact = |node: &Node, placement: &Placement| windows(node.clusters(), placement);
         let mut hypotheses = Vec::new();
-        for (candidates, num_declared) in [
-            (&self.own, num_views),
-            (&self.undone, num_views * num_undone),
-        ] {
+        for (candidates, num_declared) in [(&self.own, num_own), (&self.undone, num_undone)] {
             hypotheses.extend(candidates.iter().map(|candidate| {
                 let view = &candidate.view;
                 Hypothesis {

@@ -1,10 +1,9 @@
 //! Clusters in few bytes: rounded far below what a quantizer notices.
 //!
-//! As bytes: the pitch in 8, the units of areas and of moments in 4 each, the number of clusters in 4; then the clusters in
+//! As bytes: the units of areas and of moments in 4 each, the number of clusters in 4; then the clusters in
 //! increasing order of their cells. A cluster: the distance of its cell's number from the one before (LEB128), its centre
 //! within the cell in 3 bytes, its area vector in 6, its moment in 2, its weight in 1. All integers are little-endian.
 
-use super::PITCHES;
 use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, corner, number};
 use glam::DVec3;
 use std::f64::consts::LN_2;
@@ -105,7 +104,6 @@ impl Store {
 
     /// Appends the bytes.
     pub fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.pitch.to_le_bytes());
         bytes.extend(self.area_unit.to_le_bytes());
         bytes.extend(self.moment_unit.to_le_bytes());
         bytes.extend((self.rounded.len() as u32).to_le_bytes());
@@ -127,15 +125,13 @@ impl Store {
         }
     }
 
-    /// Takes a store from the beginning of bytes; `None` if they are none.
-    pub fn read(bytes: &mut &[u8]) -> Option<Store> {
-        let pitch = f64::from_le_bytes(take(bytes)?);
+    /// Takes a store whose clusters are fine enough for a pitch from the beginning of bytes; `None` if they are none.
+    pub fn read(bytes: &mut &[u8], pitch: f64) -> Option<Store> {
         let area_unit = f32::from_le_bytes(take(bytes)?);
         let moment_unit = f32::from_le_bytes(take(bytes)?);
         let count = u32::from_le_bytes(take(bytes)?);
         let in_range = |number: f64| number > 0.0 && number < 1e6;
-        let is_known = PITCHES.contains(&pitch);
-        if !(is_known && in_range(area_unit.into()) && in_range(moment_unit.into())) {
+        if !(in_range(area_unit.into()) && in_range(moment_unit.into())) {
             return None;
         }
         let mut rounded = Vec::new();

@@ -107,7 +107,8 @@ fn stages(criterion: &mut Criterion) {
                 gain: 100.0,
             })
             .collect();
-        b.iter(|| spectral::filtered(&mesh.positions, &rings, &filters, |_| true));
+        let moves = vec![true; mesh.positions.len()];
+        b.iter(|| spectral::filtered(&mesh.positions, &rings, &filters, &moves));
     });
     group.bench_function("SOLID: measure the surface as it is", |b| {
         b.iter(|| solid::Surfaces::new(&mesh).next())

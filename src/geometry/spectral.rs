@@ -64,18 +64,18 @@ impl InverseFilter {
     }
 }
 
-/// V positions as each filter leaves them, where only those vertices moved that `moves` names.
+/// V positions as each filter leaves them, of a smoothing that moved the vertices for which `moves` is true.
 pub fn filtered(
     positions: &[DVec3],
     rings: &Rings,
     filters: &[InverseFilter],
-    moves: impl Fn(usize) -> bool,
+    moves: &[bool],
 ) -> Vec<Vec<DVec3>> {
     let average = |x: &[DVec3]| -> Vec<DVec3> {
         let mean = |v: usize| {
             let neighbours = rings.neighbours(v);
             let sum: DVec3 = neighbours.iter().map(|&n| x[n as usize]).sum();
-            if neighbours.is_empty() || !moves(v) {
+            if neighbours.is_empty() || !moves[v] {
                 x[v]
             } else {
                 sum / neighbours.len() as f64

@@ -15,6 +15,7 @@ use crate::progress::{Cancelled, Progress};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::collections::VecDeque;
+use std::ops::Range;
 
 /// How well two successive axes of a frame are told apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,8 +130,8 @@ impl Surface {
             Origin::Filtered { family, node } => [family + 2, node],
         });
         bytes.extend(self.axes.map(|axes| axes as u8));
-        let bit = |(number, pitch)| u8::from(self.pitches.contains(pitch)) << number;
-        bytes.push((0..).zip(&PITCHES).map(bit).sum());
+        let bit = |own: &f64| 1u8 << PITCHES.partition_point(|pitch| pitch < own);
+        bytes.push(self.pitches.iter().map(bit).sum());
         self.store.write(bytes);
     }
 }
@@ -172,37 +173,33 @@ impl Surfaces {
     }
 
     /// The same, for a mesh that nobody has turned since it was marked: its axes are known to be those of the unmarked one.
-    pub fn facing(self, unmarked: &Surfaces) -> Surfaces {
-        Surfaces {
-            facing: unmarked.pose,
-            ..self
-        }
+    pub fn facing(mut self, unmarked: &Surfaces) -> Surfaces {
+        self.facing = unmarked.pose;
+        self
     }
 
     fn has_few(&self) -> bool {
         self.mesh.triangles.len() < FEW
     }
 
-    /// For each vertex, whether it lies on a boundary.
-    fn on_boundary(&self) -> Vec<bool> {
-        let mut lies = vec![false; self.mesh.positions.len()];
+    /// The surface as the filter of the family leaves it that held boundaries, where many vertices lie on them.
+    fn filtered_inside(&self) -> Vec<(Origin, Cow<'_, Mesh>)> {
+        let mut moves = vec![true; self.mesh.positions.len()];
         for &(from, to) in &self.boundary {
-            lies[from as usize] = true;
-            lies[to as usize] = true;
+            moves[from as usize] = false;
+            moves[to as usize] = false;
         }
-        lies
+        let num_held = moves.iter().filter(|moves| !**moves).count();
+        if (num_held as f64) < MANY_ON_BOUNDARIES * moves.len() as f64 {
+            return Vec::new();
+        }
+        self.filtered(HELD_FAMILY, &moves)
     }
 
-    fn has_many_on_boundaries(&self) -> bool {
-        let lies = self.on_boundary();
-        let num = lies.iter().filter(|lies| **lies).count();
-        num as f64 >= MANY_ON_BOUNDARIES * lies.len() as f64
-    }
-
-    /// The surface as the filters of some families leave it, all or none of which held boundaries.
-    fn filtered(&self, families: std::ops::Range<usize>) -> Vec<(Origin, Cow<'_, Mesh>)> {
+    /// The surface as the filters of some families leave it, whose smoothing moved some vertices.
+    fn filtered(&self, families: Range<usize>, moves: &[bool]) -> Vec<(Origin, Cow<'_, Mesh>)> {
         let has_few = self.has_few();
-        let nodes = families.clone().flat_map(|family| {
+        let nodes = families.flat_map(|family| {
             let nodes = FAMILIES[family].nodes(has_few);
             nodes.map(move |node| (family as u8, node as u8))
         });
@@ -210,11 +207,7 @@ impl Surfaces {
         let filter = |&(family, node): &(u8, u8)| FAMILIES[usize::from(family)].filter(node.into());
         let filters: Vec<InverseFilter> = nodes.iter().map(filter).collect();
         let rings = Edges::new(&self.mesh).rings(self.mesh.positions.len());
-        let is_held = FAMILIES[families].iter().all(|family| family.is_held);
-        let on_boundary = self.on_boundary();
-        let filtered = spectral::filtered(&self.mesh.positions, &rings, &filters, |vertex| {
-            !(is_held && on_boundary[vertex])
-        });
+        let filtered = spectral::filtered(&self.mesh.positions, &rings, &filters, moves);
         let surface = |((family, node), positions): ((u8, u8), Vec<DVec3>)| {
             let mesh = self.mesh.with_positions(positions);
             (Origin::Filtered { family, node }, Cow::Owned(mesh))
@@ -230,10 +223,9 @@ impl Surfaces {
                 vec![(Origin::Refined, Cow::Owned(refined(&self.mesh)))]
             }
             1 => Vec::new(),
-            2 => self.filtered(FIRST_FAMILY),
-            3 => self.filtered(OTHER_FAMILIES),
-            _ if self.has_many_on_boundaries() => self.filtered(HELD_FAMILY),
-            _ => Vec::new(),
+            2 => self.filtered(FIRST_FAMILY, &vec![true; self.mesh.positions.len()]),
+            3 => self.filtered(OTHER_FAMILIES, &vec![true; self.mesh.positions.len()]),
+            _ => self.filtered_inside(),
         };
         let largest = self.area * if self.has_few() { SPIKY_IF_FEW } else { SPIKY };
         let in_own_frame = |(origin, mesh): (Origin, Cow<Mesh>)| {
@@ -345,13 +337,15 @@ impl FromIterator<Surface> for Measurement {
 
 impl Surfaces {
     /// Only the suspect as it is.
-    pub fn plain(self) -> Surfaces {
-        Surfaces { stages: 1, ..self }
+    pub fn plain(mut self) -> Surfaces {
+        self.stages = 1;
+        self
     }
 
     /// Only what undoes nothing, chords or the first kind of smoothing.
-    pub fn first_kind(self) -> Surfaces {
-        Surfaces { stages: 3, ..self }
+    pub fn first_kind(mut self) -> Surfaces {
+        self.stages = 3;
+        self
     }
 
     /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark.

@@ -90,8 +90,8 @@ fn part_until(origin: Origin) -> f64 {
 struct Node<'a> {
     surface: Cow<'a, Surface>,
     clusters: OnceCell<Vec<Cluster>>,
-    /// For each of the surface's pitches, for each turn.
-    pilots: Vec<Vec<Vec<Window>>>,
+    /// For each of the surface's pitches and each turn.
+    pilots: Vec<Vec<Window>>,
 }
 
 impl<'a> Node<'a> {
@@ -107,10 +107,9 @@ impl<'a> Node<'a> {
         self.clusters.get_or_init(|| self.surface.store.clusters())
     }
 
-    /// The pilots' windows for each turn, if the surface is read at a pitch.
-    fn pilots(&self, pitch: f64) -> Option<&[Vec<Window>]> {
-        let place = self.surface.pitches.iter().position(|own| *own == pitch)?;
-        self.pilots.get(place).map(Vec::as_slice)
+    /// Which of the surface's pitches one is.
+    fn place(&self, pitch: f64) -> Option<usize> {
+        self.surface.pitches.iter().position(|own| *own == pitch)
     }
 
     fn field(&self, pitch: f64) -> Option<&Field> {
@@ -193,7 +192,6 @@ impl<'a> Search<'a> {
         let pitches = surface.pitches.clone();
         let mut node = Node::new(surface);
         for &pitch in &pitches {
-            let mut of_pitch = Vec::new();
             for &turn in &self.turns {
                 let is_pilot = |window: &mut Window| {
                     let (dither, symbol) = self.lattice.at(window.index);
@@ -203,9 +201,8 @@ impl<'a> Search<'a> {
                 let placement = self.lattice.placed(turn, pitch);
                 let (pilots, num_windows) = node.windows(&placement, is_pilot);
                 self.num_windows = self.num_windows.max(num_windows);
-                of_pitch.push(pilots);
+                node.pilots.push(pilots);
             }
-            node.pilots.push(of_pitch);
         }
         self.nodes.push(node);
         for pitch in pitches {
@@ -227,7 +224,7 @@ impl<'a> Search<'a> {
             _ => None,
         };
         let of_pitch = |(number, node): (usize, &Node)| {
-            let strength = strength_of(node).filter(|_| node.pilots(pitch).is_some());
+            let strength = strength_of(node).filter(|_| node.place(pitch).is_some());
             strength.map(|strength| (number, strength))
         };
         let (nodes, strengths): (Vec<usize>, Vec<f64>) =
@@ -250,8 +247,9 @@ impl<'a> Search<'a> {
         let parts = weights(strengths, strength);
         for (number, &turn) in self.turns.iter().enumerate() {
             let lists = parts.iter().filter_map(|&(part, weight)| {
-                let pilots = self.nodes[nodes[part]].pilots(pitch)?;
-                Some((pilots[number].as_slice(), weight))
+                let node = &self.nodes[nodes[part]];
+                let place = node.place(pitch)? * self.turns.len() + number;
+                Some((node.pilots[place].as_slice(), weight))
             });
             let pilots = blend(lists);
             let best = if nodes == [0] {

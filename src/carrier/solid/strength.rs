@@ -7,8 +7,6 @@ use std::ops::Range;
 /// A kind of smoothing, undone at growing strengths.
 pub struct Family {
     step: fn(f64) -> f64,
-    /// Whether boundaries were held.
-    pub is_held: bool,
     gain: f64,
     /// Numbers of steps: the nodes between which fluxes are interpolated.
     strengths: &'static [f64],
@@ -28,13 +26,11 @@ const LAPLACIAN: &[f64] = &[
 pub const FAMILIES: [Family; 5] = [
     Family {
         step: spectral::laplacian,
-        is_held: false,
         gain: 100.0,
         strengths: LAPLACIAN,
     },
     Family {
         step: spectral::taubin,
-        is_held: false,
         gain: 100.0,
         strengths: &[
             3.9, 4.5, 5.1, 5.8, 6.7, 7.6, 8.8, 10.1, 11.5, 13.1, 14.9, 17.0, 19.6, 22.6, 26.0,
@@ -42,19 +38,16 @@ pub const FAMILIES: [Family; 5] = [
     },
     Family {
         step: spectral::laplacian,
-        is_held: false,
         gain: 2000.0,
         strengths: &[19.6, 22.6, 26.0, 29.8, 34.1, 39.0, 44.5, 50.8, 58.0],
     },
     Family {
         step: spectral::laplacian,
-        is_held: false,
         gain: 20.0,
         strengths: &[4.5, 5.8, 7.6, 10.1, 13.1, 17.0, 22.6, 29.8, 39.0],
     },
     Family {
         step: spectral::laplacian,
-        is_held: true,
         gain: 1000.0,
         strengths: LAPLACIAN,
     },
@@ -63,6 +56,7 @@ pub const FAMILIES: [Family; 5] = [
 /// The kinds in the order in which they are measured.
 pub const FIRST_FAMILY: Range<usize> = 0..1;
 pub const OTHER_FAMILIES: Range<usize> = 1..4;
+/// The kind that held boundaries.
 pub const HELD_FAMILY: Range<usize> = 4..5;
 
 impl Family {

@@ -3,7 +3,8 @@
 //! Smoothing multiplies the components of a mesh's spectrum by powers of a known factor; as long as none is lost in
 //! rounding, dividing brings them back. The eigenvalues x of the averaging operator W = D^-1 A lie in [-1, 1]; with
 //! kappa = 1 - x, k steps of Laplacian smoothing by lambda leave (1 - lambda kappa)^k. The inverse is limited to a greatest
-//! gain. Vertices that were held are rows of the identity in W: its eigenvalues stay real and within [-1, 1]. All filters share the polynomials T_n(W) X, which are computed once. O(degree * (edges + filters * V)).
+//! gain. Vertices that were held are rows of the identity in W: its eigenvalues stay real and within [-1, 1]. All filters
+//! share the polynomials T_n(W) X, which are computed once. O(degree * (edges + filters * V)).
 
 use crate::mesh::Rings;
 use glam::DVec3;

@@ -177,20 +177,20 @@ fn solid_stays_in_the_shape() {
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_undoes_smoothing_that_held_boundaries() {
     let open = crop(&shapes::asteroid(60, 90), 0.3, 3);
-    let result = marked(&open, 1);
-    let whole = exponent(&result, 1);
-    for steps in [9, 27, 45] {
-        let left = exponent(&smooth_inside(&result, 0.1, steps), 1) / whole;
-        assert!(left >= 0.3, "{steps}: {left:.2} of {whole:.0} is left");
-    }
+    assert_is_undone(&open, smooth_inside, [9, 27, 45]);
 }
 
 /// There it moves vertices farther than a step is wide, and takes a third of the area.
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_undoes_smoothing_of_few_triangles() {
-    let result = marked(&shapes::low_poly(), 1);
+    assert_is_undone(&shapes::low_poly(), smooth, [7, 14, 28]);
+}
+
+/// Of a mark, three tenths and more are left after each number of steps.
+fn assert_is_undone(host: &Mesh, smooth: fn(&Mesh, f64, u32) -> Mesh, numbers: [u32; 3]) {
+    let result = marked(host, 1);
     let whole = exponent(&result, 1);
-    for steps in [7, 14, 28] {
+    for steps in numbers {
         let left = exponent(&smooth(&result, 0.1, steps), 1) / whole;
         assert!(left >= 0.3, "{steps}: {left:.2} of {whole:.0} is left");
     }
@@ -281,8 +281,8 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
     );
 }
 
-/// What nobody measured is refused: surfaces out of order or twice, or at three pitches, which would be tests that are not charged, and cells so far
-/// apart that a lattice between them would not fit in memory.
+/// What nobody measured is refused: surfaces out of order or twice, or at three pitches, which would be tests that are not charged,
+/// and cells so far apart that a lattice between them would not fit in memory.
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_refuses_forged_measurements() {
     let bytes = Measurement::new(&rock()).to_bytes();

@@ -114,6 +114,31 @@ pub struct Hypothesis {
     pub ln_num_tests: f64,
 }
 
+/// Why bytes are no measurement. Whoever sends evidence may have written it by hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StoredError {
+    /// Cut short, or not such bytes at all.
+    Damaged,
+    /// Numbers that no surface gives, in words that follow "the evidence has".
+    Impossible(&'static str),
+}
+
+/// The first bytes of some, which are taken off.
+pub(crate) fn take<const N: usize>(bytes: &mut &[u8]) -> Result<[u8; N], StoredError> {
+    let (first, rest) = bytes.split_first_chunk().ok_or(StoredError::Damaged)?;
+    *bytes = rest;
+    Ok(*first)
+}
+
+/// Goes on only with what a surface can give.
+pub(crate) fn possible(is_possible: bool, otherwise: &'static str) -> Result<(), StoredError> {
+    if is_possible {
+        Ok(())
+    } else {
+        Err(StoredError::Impossible(otherwise))
+    }
+}
+
 /// Why a mark could not be embedded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

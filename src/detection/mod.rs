@@ -21,14 +21,20 @@ pub struct Statistic {
 }
 
 impl Statistic {
-    /// From pairs of (signed value, weight), `|value| <= weight`.
+    /// From pairs of (signed value, weight). The bound needs `0 <= weight` and `|value| <= weight`: it holds here, whatever
+    /// is given. A weight below that, or none, counts as 0; a value beyond it counts as the nearest, and one that is no
+    /// number as `-weight`.
     pub fn new(terms: impl IntoIterator<Item = (f64, f64)>) -> Statistic {
         terms
             .into_iter()
-            .fold(Statistic::default(), |s, (value, weight)| Statistic {
-                sum: s.sum + value,
-                weight: s.weight + weight,
-                energy: s.energy + weight * weight,
+            .fold(Statistic::default(), |s, (value, weight)| {
+                let weight = weight.max(0.0);
+                let value = value.max(-weight).min(weight);
+                Statistic {
+                    sum: s.sum + value,
+                    weight: s.weight + weight,
+                    energy: s.energy + weight * weight,
+                }
             })
     }
 
@@ -52,8 +58,9 @@ impl Statistic {
     }
 }
 
+/// Weights whose squares are too small or too large for a number say nothing.
 fn exponent(sum: f64, energy: f64) -> f64 {
-    if sum > 0.0 {
+    if sum > 0.0 && energy.is_normal() {
         let ratio = sum / energy.sqrt();
         -ratio * ratio
     } else {

@@ -3,7 +3,7 @@
 //! Stored form (docs/FORMAT.md): `MMEV`, a version of 2 bytes, then one section a carrier: a tag of 4 bytes, the length of
 //! its content in 4 bytes, the content. All integers little-endian.
 
-use crate::carrier::{ring, solid};
+use crate::carrier::{StoredError, ring, solid};
 use crate::mesh::Mesh;
 
 const MAGIC: &[u8; 4] = b"MMEV";
@@ -24,8 +24,20 @@ pub enum EvidenceError {
     )]
     Version(u16),
     /// Cut short or damaged.
-    #[error("the evidence is damaged")]
+    #[error("the evidence is damaged: measure the suspect again")]
     Damaged,
+    /// Numbers that no surface gives: it was not measured, but made up.
+    #[error("the evidence has {0}, which no model gives: measure the suspect yourself")]
+    Impossible(&'static str),
+}
+
+impl From<StoredError> for EvidenceError {
+    fn from(error: StoredError) -> EvidenceError {
+        match error {
+            StoredError::Damaged => EvidenceError::Damaged,
+            StoredError::Impossible(what) => EvidenceError::Impossible(what),
+        }
+    }
 }
 
 impl EvidenceError {
@@ -35,6 +47,7 @@ impl EvidenceError {
             EvidenceError::NotEvidence => "evidence.not-evidence",
             EvidenceError::Version(_) => "evidence.version",
             EvidenceError::Damaged => "evidence.damaged",
+            EvidenceError::Impossible(_) => "evidence.impossible",
         }
     }
 }
@@ -88,8 +101,8 @@ impl Evidence {
         }
         let (ring, bytes) = section(bytes, RING).ok_or(EvidenceError::Damaged)?;
         let (solid, rest) = section(bytes, SOLID).ok_or(EvidenceError::Damaged)?;
-        let ring = ring::Measurement::from_bytes(ring).ok_or(EvidenceError::Damaged)?;
-        let solid = solid::Measurement::from_bytes(solid).ok_or(EvidenceError::Damaged)?;
+        let ring = ring::Measurement::from_bytes(ring)?;
+        let solid = solid::Measurement::from_bytes(solid)?;
         if rest.is_empty() {
             Ok(Evidence { ring, solid })
         } else {

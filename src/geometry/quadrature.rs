@@ -1,5 +1,6 @@
 //! Integrals over a surface: as many sample points as a given resolution needs.
 
+use crate::mesh::Mesh;
 use glam::DVec3;
 
 /// One part of a triangle, seen from its centroid.
@@ -19,6 +20,7 @@ const DEEPEST: u32 = 6;
 /// Splits triangles into parts whose edges are no longer than a limit.
 pub struct Quadrature {
     max_edge: f64,
+    deepest: u32,
     /// By depth, the centroids of a triangle's `4^depth` equal parts, in barycentric coordinates.
     centroids: Vec<Vec<[f64; 3]>>,
 }
@@ -28,16 +30,44 @@ impl Quadrature {
     pub fn new(max_edge: f64) -> Quadrature {
         Quadrature {
             max_edge,
+            deepest: DEEPEST,
             centroids: (0..=DEEPEST).map(centroids).collect(),
         }
     }
 
+    /// The same for a mesh, of which there are to be no more parts than a number, or than its triangles: all splits are then less
+    /// deep, and some edges longer. Without a limit, a few kilobytes of needles cost as much as a scanned statue.
+    pub fn at_most(self, num_parts: u64, mesh: &Mesh) -> Quadrature {
+        let mut by_depth = [0u64; DEEPEST as usize + 1];
+        for &triangle in &mesh.triangles {
+            by_depth[self.depth(mesh.corners(triangle)) as usize] += 1;
+        }
+        let parts = |deepest: u32| -> u64 {
+            let by_depth = by_depth.iter().zip(0..);
+            by_depth
+                .map(|(number, depth)| number << (2 * deepest.min(depth)))
+                .sum()
+        };
+        Quadrature {
+            deepest: (1..=DEEPEST)
+                .rev()
+                .find(|&deepest| parts(deepest) <= num_parts)
+                .unwrap_or(0),
+            ..self
+        }
+    }
+
+    /// How deep a triangle is split.
+    fn depth(&self, [a, b, c]: [DVec3; 3]) -> u32 {
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        (0..self.deepest)
+            .find(|&depth| longest <= self.max_edge * f64::from(1 << depth))
+            .unwrap_or(self.deepest)
+    }
+
     /// The samples of a triangle: one for each part. Moments of the first order are exact in every part.
     pub fn samples(&self, [a, b, c]: [DVec3; 3]) -> impl Iterator<Item = Sample> {
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        let depth = (0..DEEPEST)
-            .find(|&depth| longest <= self.max_edge * f64::from(1 << depth))
-            .unwrap_or(DEEPEST);
+        let depth = self.depth([a, b, c]);
         let weights = &self.centroids[depth as usize];
         let area = (b - a).cross(c - a) * (0.5 / weights.len() as f64);
         weights.iter().map(move |&weights| Sample {

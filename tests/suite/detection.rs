@@ -33,6 +33,28 @@ fn detection_neither_underflows_nor_overflows() {
     }
 }
 
+/// Whatever a carrier gives, no term says more than its weight allows.
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_no_value_exceeds_its_weight() {
+    let perfect = Statistic::new([(1.0, 1.0); 4]);
+    for beyond in [1.0 + 1e-9, 3.0, 1e300, f64::INFINITY] {
+        assert_eq!(Statistic::new([(beyond, 1.0); 4]), perfect, "{beyond}");
+    }
+    for (value, weight) in [
+        (f64::NAN, 1.0),
+        (1.0, f64::NAN),
+        (1.0, -1.0),
+        (1.0, f64::INFINITY),
+        (1e-200, 1e-200),
+    ] {
+        assert_eq!(
+            Statistic::new([(value, weight)]).ln_p(),
+            0.0,
+            "{value} of {weight}"
+        );
+    }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn detection_unions_add_logarithms_and_end_at_certainty() {
     assert_eq!(union(-10.0, libm::log(4.0)), -10.0 + libm::log(4.0));

@@ -35,7 +35,7 @@ fn evidence_refuses_what_is_none_by_name() {
                 &bytes[14 + 26..],
             ]
             .concat(),
-            "evidence.damaged",
+            "evidence.impossible",
         ),
     ] {
         assert_eq!(

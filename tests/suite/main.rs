@@ -8,6 +8,9 @@ wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
 
 mod architecture;
 mod attack;
+#[cfg(not(target_arch = "wasm32"))]
+// a hundred thousand keys, and nothing that differs between targets
+mod bound;
 mod chain;
 mod code;
 mod curvature;

@@ -4,7 +4,7 @@ use crate::support::fixtures::{asteroid, key};
 use glam::{DMat3, DVec3};
 use meshmark::attack::{crop, reorder, similarity};
 use meshmark::carrier::ring::{Measurement, NEEDED_ADDRESSES, num_addresses};
-use meshmark::carrier::{Carrier, Host, Hypothesis, Mark};
+use meshmark::carrier::{Carrier, Host, Hypothesis, Mark, StoredError};
 use meshmark::code::{Codeword, Symbol};
 use meshmark::detection::Statistic;
 use meshmark::ignore;
@@ -168,11 +168,14 @@ fn ring_weights_do_not_depend_on_the_key() {
 fn ring_measurement_is_its_bytes() {
     let measurement = Measurement::new(&shapes::terrain(20));
     let bytes = measurement.to_bytes();
-    assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Some(&measurement));
-    assert_eq!(Measurement::from_bytes(&bytes[1..]), None);
+    assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Ok(&measurement));
+    assert_eq!(
+        Measurement::from_bytes(&bytes[..bytes.len() - 1]),
+        Err(StoredError::Damaged)
+    );
     assert_eq!(
         Measurement::from_bytes(&[]).map(|m| m.to_bytes()),
-        Some(vec![])
+        Ok(vec![])
     );
 }
 

@@ -4,7 +4,7 @@ use crate::support::fixtures::key;
 use glam::DVec3;
 use meshmark::attack::{crop, noise, quantize, reorder, similarity, smooth, smooth_inside};
 use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
-use meshmark::carrier::{Carrier, Host, Mark};
+use meshmark::carrier::{Carrier, Host, Mark, StoredError};
 use meshmark::code::{Codeword, SoftSymbol, Symbol};
 use meshmark::detection::Statistic;
 use meshmark::geometry::{Distortion, diagonal};
@@ -211,8 +211,11 @@ fn solid_marks_of_two_keys_stay_beside_each_other() {
 fn solid_measurement_is_its_bytes() {
     let measurement = Measurement::new(&shapes::torus_knot(100, 24));
     let bytes = measurement.to_bytes();
-    assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Some(&measurement));
-    assert_eq!(Measurement::from_bytes(&bytes[..bytes.len() - 1]), None);
+    assert_eq!(Measurement::from_bytes(&bytes).as_ref(), Ok(&measurement));
+    assert_eq!(
+        Measurement::from_bytes(&bytes[..bytes.len() - 1]),
+        Err(StoredError::Damaged)
+    );
     assert!(bytes.len() < 2_000_000);
 }
 
@@ -281,33 +284,77 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
     );
 }
 
-/// What nobody measured is refused: surfaces out of order or twice, or at three pitches, which would be tests that are not charged,
-/// and cells so far apart that a lattice between them would not fit in memory.
+/// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, units of areas and of
+/// moments in 4 each, the number of clusters in 4; then the first cluster's cell in 9, its centre in 3, area vector in 6, moment in 2, area in 1.
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_refuses_forged_measurements() {
+    const PITCHES: usize = 4;
+    const AREA_UNIT: usize = 5;
+    const MOMENT_UNIT: usize = 9;
+    const COUNT: usize = 13;
+    const FIRST: usize = 17;
     let bytes = Measurement::new(&rock()).to_bytes();
-    assert!(Measurement::from_bytes(&bytes).is_some());
+    let with = |at: usize, forged: &[u8]| {
+        let mut bytes = bytes.clone();
+        bytes[at..at + forged.len()].copy_from_slice(forged);
+        bytes
+    };
+    let impossible = |forged: &[u8]| match Measurement::from_bytes(forged) {
+        Err(StoredError::Impossible(what)) => what,
+        other => panic!("{:?}", other.map(drop)),
+    };
+    assert!(Measurement::from_bytes(&bytes).is_ok());
+    let twice = [bytes.as_slice(), &bytes].concat();
+    assert_eq!(impossible(&twice), "surfaces out of order or twice");
     assert_eq!(
-        Measurement::from_bytes(&[bytes.as_slice(), &bytes].concat()),
-        None
+        impossible(&with(0, &[2])),
+        "surfaces without the suspect's own"
     );
-    let mut filtered = bytes.clone();
-    filtered[0] = 2;
-    assert_eq!(
-        Measurement::from_bytes(&filtered),
-        None,
-        "the suspect is missing"
-    );
-    for pitches in [0, 0b111, 0b100_0001] {
-        let mut forged = bytes.clone();
-        forged[4] = pitches;
-        assert_eq!(Measurement::from_bytes(&forged), None, "{pitches} pitches");
+    for pitches in [0b111, 0b100_0001] {
+        assert_eq!(
+            impossible(&with(PITCHES, &[pitches])),
+            "a surface at more pitches than are read"
+        );
     }
-    // Origin and axes, pitches, units; then two clusters, the second in a cell far from the first.
-    let mut far = bytes[..13].to_vec();
-    far.extend(2u32.to_le_bytes());
-    let cluster = [0u8; 13];
-    far.extend([&[0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x02][..], &cluster].concat());
-    far.extend([&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x03][..], &cluster].concat());
-    assert_eq!(Measurement::from_bytes(&far), None, "cells out of reach");
+    assert_eq!(
+        Measurement::from_bytes(&with(PITCHES, &[0])),
+        Err(StoredError::Damaged)
+    );
+    for unit in [1e5f32, f32::INFINITY, f32::NAN, -1.0] {
+        assert_eq!(
+            impossible(&with(AREA_UNIT, &unit.to_le_bytes())),
+            "areas in a unit that no surface needs"
+        );
+        assert_eq!(
+            impossible(&with(MOMENT_UNIT, &unit.to_le_bytes())),
+            "moments in a unit that no surface needs"
+        );
+    }
+    assert_eq!(
+        impossible(&with(COUNT, &u32::MAX.to_le_bytes())),
+        "more pieces than are kept of a surface"
+    );
+    // The first cluster's area vector, and its moment, as long as can be; its area as small.
+    for at in [FIRST + 9 + 3, FIRST + 9 + 9] {
+        let mut forged = with(at, &i16::MAX.to_le_bytes());
+        forged[FIRST + 9 + 11] = u8::MAX;
+        assert_eq!(
+            impossible(&forged),
+            "a piece with more flux than its area gives"
+        );
+    }
+    let few = |count: u32, clusters: &[&[u8]]| {
+        [&bytes[..COUNT], &count.to_le_bytes(), &clusters.concat()].concat()
+    };
+    let far: &[u8] = &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x03];
+    assert_eq!(
+        impossible(&few(1, &[far, &[0; 12]])),
+        "a piece beyond the frame"
+    );
+    let (first, rest) = (&bytes[FIRST..FIRST + 9], [0; 12]);
+    let same: &[u8] = &[0];
+    assert_eq!(
+        impossible(&few(2, &[first, &rest, same, &rest])),
+        "two pieces in one cell"
+    );
 }

@@ -160,19 +160,24 @@ pub fn by_geometry(
 /// A cell of a frame, by its number along each axis.
 pub type Cell = [i16; 3];
 
+/// The farthest cell along an axis: what lies beyond counts as there.
+pub const FARTHEST_CELL: i16 = 32_000;
+
 /// The cells of V positions.
 pub fn cells(positions: &[DVec3], pose: &Pose) -> Vec<Cell> {
-    let number = |coordinate: f64| (coordinate / CELL).floor().clamp(-32000.0, 32000.0) as i16;
+    let farthest = f64::from(FARTHEST_CELL);
+    let number = |coordinate: f64| (coordinate / CELL).floor().clamp(-farthest, farthest) as i16;
     positions
         .iter()
         .map(|&p| pose.canonical(p).to_array().map(number))
         .collect()
 }
 
-/// The address of a cell, seen in a turned frame.
+/// The address of a cell, seen in a turned frame, in which number n becomes -n - 1, which is `!n`. Different cells may have one
+/// address: whoever reads sums by address, not by cell.
 pub fn by_position(cell: Cell, turn: Turn) -> u64 {
     let numbers = cell.into_iter().zip(turn.turned_axes());
-    let seen = numbers.map(|(number, turned)| if turned { -number - 1 } else { number });
+    let seen = numbers.map(|(number, turned)| if turned { !number } else { number });
     mix(seen.fold(54321, |hash, number| mix(hash).wrapping_add(number as u64)))
 }
 

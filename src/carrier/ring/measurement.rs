@@ -1,9 +1,9 @@
 //! What RING measures of a suspect without a key, and how a key reads it.
 
-use super::address::{self, Cell, Turn};
+use super::address::{self, Cell, FARTHEST_CELL, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Ownership, STEP};
-use crate::carrier::{Hypothesis, Reading};
+use crate::carrier::{Hypothesis, Reading, StoredError, possible, take};
 use crate::code::SoftSymbol;
 use crate::geometry::Pose;
 use crate::key::Key;
@@ -48,6 +48,29 @@ impl Sample {
             .fold(0, |cell, number| cell << 16 | number);
         let offset = u64::from(self.offset.to_bits());
         [self.by_connectivity, self.by_geometry, cell, offset]
+    }
+}
+
+impl Sample {
+    /// Takes a ring from the beginning of bytes.
+    fn read(bytes: &mut &[u8]) -> Result<Sample, StoredError> {
+        let by_connectivity = u64::from_le_bytes(take(bytes)?);
+        let by_geometry = u64::from_le_bytes(take(bytes)?);
+        let mut number = || Ok(i16::from_le_bytes(take(bytes)?));
+        let cell: Cell = [number()?, number()?, number()?];
+        let offset = f32::from_le_bytes(take(bytes)?);
+        let range = -FARTHEST_CELL..=FARTHEST_CELL;
+        possible(
+            cell.iter().all(|number| range.contains(number)),
+            "a ring in a cell beyond the last",
+        )?;
+        possible(offset.is_finite(), "a ring whose offset is no number")?;
+        Ok(Sample {
+            by_connectivity,
+            by_geometry,
+            cell,
+            offset,
+        })
     }
 }
 
@@ -116,28 +139,16 @@ impl Measurement {
         self.samples.iter().flat_map(encode).collect()
     }
 
-    /// A measurement from its bytes; `None` if they are not such.
-    pub fn from_bytes(bytes: &[u8]) -> Option<Measurement> {
-        let (samples, rest) = bytes.as_chunks::<{ Self::SAMPLE_BYTES }>();
-        let samples: Option<Vec<Sample>> = samples
-            .iter()
-            .map(|bytes| {
-                let (by_connectivity, rest) = bytes.split_first_chunk()?;
-                let (by_geometry, rest) = rest.split_first_chunk()?;
-                let (numbers, rest) = rest.split_first_chunk::<6>()?;
-                let number = |i: usize| i16::from_le_bytes([numbers[2 * i], numbers[2 * i + 1]]);
-                let offset = f32::from_le_bytes(rest.try_into().ok()?);
-                offset.is_finite().then(|| Sample {
-                    by_connectivity: u64::from_le_bytes(*by_connectivity),
-                    by_geometry: u64::from_le_bytes(*by_geometry),
-                    cell: [number(0), number(1), number(2)],
-                    offset,
-                })
-            })
-            .collect();
-        rest.is_empty()
-            .then(|| samples.map(Measurement::from_samples))
-            .flatten()
+    /// A measurement from its bytes.
+    ///
+    /// # Errors
+    /// Where they are none, or hold numbers that no ring gives.
+    pub fn from_bytes(mut bytes: &[u8]) -> Result<Measurement, StoredError> {
+        let mut samples = Vec::with_capacity(bytes.len() / Self::SAMPLE_BYTES);
+        while !bytes.is_empty() {
+            samples.push(Sample::read(&mut bytes)?);
+        }
+        Ok(Measurement::from_samples(samples))
     }
 }
 
@@ -187,19 +198,11 @@ fn sums(samples: &[Sample]) -> Vec<Vec<Sum>> {
     };
     let connectivity = rings.groups(|sample| sample.by_connectivity);
     let geometry = rings.groups(|sample| sample.by_geometry);
-    let position = rings.groups(|sample| {
-        sample
-            .cell
-            .into_iter()
-            .fold(0, |key, n| key << 16 | u64::from(n as u16))
-    });
-    let by_connectivity =
-        CUTS.map(|cut| rings.sums(&connectivity, cut, |sample| sample.by_connectivity));
-    let by_geometry = CUTS.map(|cut| rings.sums(&geometry, cut, |sample| sample.by_geometry));
+    let by_connectivity = CUTS.map(|cut| rings.sums(&connectivity, cut));
+    let by_geometry = CUTS.map(|cut| rings.sums(&geometry, cut));
     let by_position = Turn::ALL.map(|turn| {
-        rings.sums(&position, f32::INFINITY, |sample| {
-            address::by_position(sample.cell, turn)
-        })
+        let position = rings.groups(|sample| address::by_position(sample.cell, turn));
+        rings.sums(&position, f32::INFINITY)
     });
     by_connectivity
         .into_iter()
@@ -214,13 +217,14 @@ struct Rings<'a> {
 }
 
 impl Rings<'_> {
-    /// The samples in groups of an equal key.
-    fn groups(&self, key: impl Fn(&Sample) -> u64) -> Vec<(u64, u32)> {
-        order_by(self.samples.iter().map(key))
+    /// The samples by their addresses, ascending.
+    fn groups(&self, address: impl Fn(&Sample) -> u64) -> Vec<(u64, u32)> {
+        order_by(self.samples.iter().map(address))
     }
 
-    /// One sum for each group that has rings with a feature below the cut.
-    fn sums(&self, groups: &[(u64, u32)], cut: f32, address: impl Fn(&Sample) -> u64) -> Vec<Sum> {
+    /// One sum for each address that has rings with a feature below the cut. Addresses are hashes, and a suspect may be made
+    /// so that different cells have one: equal addresses share a dither, so they are one term.
+    fn sums(&self, groups: &[(u64, u32)], cut: f32) -> Vec<Sum> {
         let sum = |group: &[(u64, u32)]| {
             let indices = group.iter().map(|&(_, index)| index as usize);
             let below = indices.filter(|&index| self.samples[index].offset.abs() < cut);
@@ -230,9 +234,8 @@ impl Rings<'_> {
                     (count + 1, re + phasor.re, im + phasor.im)
                 });
             let scale = (LIMIT / libm::hypot(re, im)).min(1.0 / f64::from(count).sqrt());
-            let first = &self.samples[group[0].1 as usize];
             (count > 0).then(|| Sum {
-                address: address(first),
+                address: group[0].0,
                 re: re * scale,
                 im: im * scale,
             })

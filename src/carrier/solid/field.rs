@@ -6,7 +6,7 @@
 
 use super::flux::{Cluster, Grid, Placement, RADIUS, Window, ceil, floor, weight};
 use super::measurement::Axes;
-use super::{Lattice, STEPS, cosine};
+use super::{Lattice, STEPS, cosine, phase};
 use crate::code::Symbol;
 use crate::progress::Cancelled;
 use glam::{DMat3, DQuat, DVec3};
@@ -83,6 +83,11 @@ impl Field {
         let block = (i / BLOCK * y + j / BLOCK) * z + k / BLOCK;
         let bit = (i % BLOCK * BLOCK + j % BLOCK) * BLOCK + k % BLOCK;
         (block, 1 << bit)
+    }
+
+    /// Points of its table.
+    pub fn len(&self) -> usize {
+        self.grid.values.len()
     }
 
     /// The pitch that the field is for.
@@ -389,7 +394,7 @@ impl Field {
             };
             energy += weight * weight;
             for (sum, step) in sums.iter_mut().zip(STEPS) {
-                *sum += weight * cosine(flux * self.pitch / step + pilot.dither);
+                *sum += weight * cosine(phase(flux * self.pitch / step, pilot.dither));
             }
         }
         let (mut sum, mut step) = (0.0, STEPS[0]);

@@ -3,10 +3,13 @@
 
 use super::field::Field;
 use super::flux::clusters;
-use super::store::{Store, take};
+use super::store::Store;
 use super::strength::{FAMILIES, FIRST_FAMILY, HELD_FAMILY, OTHER_FAMILIES};
-use super::{AREAS, MOST_PITCHES, PITCHES, boundary, pitches, pose_of, search};
-use crate::carrier::Reading;
+use super::{
+    AREAS, LARGEST_AREA, MOST_PITCHES, PITCHES, SPIKY, SPIKY_IF_FEW, boundary, pitches, pose_of,
+    search,
+};
+use crate::carrier::{Reading, StoredError, possible, take};
 use crate::geometry::spectral::{self, InverseFilter};
 use crate::geometry::{Pose, oriented, refined};
 use crate::key::Key;
@@ -46,14 +49,11 @@ const COARSE: usize = 15_000;
 /// changes much with the strength.
 const FEW: usize = 4_000;
 
-/// A filtered surface that is so many times larger than the suspect has spikes, and is left out.
-const SPIKY: f64 = 1.6;
-
-/// The same for meshes of few triangles.
-const SPIKY_IF_FEW: f64 = 3.0;
-
 /// Shares of vertices on boundaries from which on it matters whether a smoothing held them.
 const MANY_ON_BOUNDARIES: f64 = 0.02;
+
+/// No more tables are made once they have so many points together, of 4 bytes each.
+const MOST_TABULATED: usize = 1 << 26;
 
 /// What a suspect is measured in.
 const STAGES: usize = 5;
@@ -74,6 +74,20 @@ pub enum Origin {
     Filtered { family: u8, node: u8 },
 }
 
+impl Origin {
+    fn read(bytes: [u8; 2]) -> Option<Origin> {
+        match bytes {
+            [0, 0] => Some(Origin::Suspect),
+            [1, 0] => Some(Origin::Refined),
+            [family, node] => {
+                let family = family.checked_sub(2)?;
+                let nodes = FAMILIES.get(usize::from(family))?.len();
+                (usize::from(node) < nodes).then_some(Origin::Filtered { family, node })
+            }
+        }
+    }
+}
+
 /// A surface of a suspect, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
@@ -90,33 +104,26 @@ pub struct Surface {
 
 impl Surface {
     /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store.
-    fn read(bytes: &mut &[u8]) -> Option<Surface> {
-        let origin = match take(bytes)? {
-            [0, 0] => Origin::Suspect,
-            [1, 0] => Origin::Refined,
-            [family, node] => {
-                let family = family.checked_sub(2)?;
-                let nodes = FAMILIES.get(usize::from(family))?.len();
-                (usize::from(node) < nodes).then_some(Origin::Filtered { family, node })?
-            }
-        };
+    fn read(bytes: &mut &[u8]) -> Result<Surface, StoredError> {
+        let origin = Origin::read(take(bytes)?).ok_or(StoredError::Damaged)?;
         let [first, second] = take(bytes)?;
         let axes = |byte: u8| {
-            [Axes::Distinct, Axes::Exchangeable, Axes::Undetermined]
-                .get(usize::from(byte))
-                .copied()
+            let known = [Axes::Distinct, Axes::Exchangeable, Axes::Undetermined];
+            let axes = known.get(usize::from(byte)).copied();
+            axes.ok_or(StoredError::Damaged)
         };
         let axes = [axes(first)?, axes(second)?];
         let [bits] = take(bytes)?;
         let is_read = |(number, pitch): (u8, f64)| (bits >> number & 1 != 0).then_some(pitch);
         let pitches: Vec<f64> = (0..).zip(PITCHES).filter_map(is_read).collect();
-        // No more are charged: forged evidence may not be read at more.
-        let is_sound = pitches.len() <= MOST_PITCHES && bits >> PITCHES.len() == 0;
-        let finest = pitches.first().filter(|_| is_sound)?;
-        Some(Surface {
+        // No more are charged.
+        let is_possible = pitches.len() <= MOST_PITCHES && bits >> PITCHES.len() == 0;
+        possible(is_possible, "a surface at more pitches than are read")?;
+        let finest = *pitches.first().ok_or(StoredError::Damaged)?;
+        Ok(Surface {
             origin,
             axes,
-            store: Store::read(bytes, *finest)?,
+            store: Store::read(bytes, finest)?,
             pitches,
             fields: Vec::new(),
         })
@@ -242,6 +249,9 @@ impl Surfaces {
                 self.pitches.clone()
             };
             let finest = *pitches.first()?;
+            if area > LARGEST_AREA * (finest * own.size) * (finest * own.size) {
+                return None;
+            }
             let own = own.aligned_with(self.facing.as_ref().unwrap_or(pose));
             Some(Surface {
                 origin,
@@ -287,13 +297,21 @@ impl Measurement {
     /// to seconds and some 60 MB a surface. A key then costs about half on surfaces whose tables are small, and no less where they
     /// are too large for the processor's cache.
     ///
+    /// Where tables would take more than half a gigabyte together, the surfaces that come last have none, and are read as for one key.
+    ///
     /// What is between the table's points is interpolated, with an RMS error below 2 % of a quantizer's step. No key has a part in
     /// that: the bound of what is read is exact.
     pub fn for_many_keys(mut self) -> Measurement {
+        let mut num_points = 0;
         for surface in &mut self.surfaces {
             let clusters = surface.store.clusters();
-            let field = |&pitch: &f64| Field::new(&clusters, pitch);
-            surface.fields = surface.pitches.iter().map(field).collect();
+            for &pitch in &surface.pitches {
+                if num_points < MOST_TABULATED {
+                    let field = Field::new(&clusters, pitch);
+                    num_points += field.len();
+                    surface.fields.push(field);
+                }
+            }
         }
         self
     }
@@ -312,17 +330,27 @@ impl Measurement {
         bytes
     }
 
-    /// A measurement from its bytes; `None` if they are not such.
-    pub fn from_bytes(mut bytes: &[u8]) -> Option<Measurement> {
+    /// A measurement from its bytes.
+    ///
+    /// # Errors
+    /// Where they are none, or hold numbers that no surface gives.
+    pub fn from_bytes(mut bytes: &[u8]) -> Result<Measurement, StoredError> {
         let mut surfaces = Vec::new();
         while !bytes.is_empty() {
             surfaces.push(Surface::read(&mut bytes)?);
         }
-        // Each surface is charged once: forged evidence may not say otherwise.
+        // Each surface is charged once.
         let is_first = |surface: &Surface| surface.origin == Origin::Suspect;
         let in_order = |pair: &[Surface]| pair[0].origin < pair[1].origin;
-        let is_sound = surfaces.first().is_none_or(is_first) && surfaces.windows(2).all(in_order);
-        is_sound.then_some(Measurement { surfaces })
+        possible(
+            surfaces.first().is_none_or(is_first),
+            "surfaces without the suspect's own",
+        )?;
+        possible(
+            surfaces.windows(2).all(in_order),
+            "surfaces out of order or twice",
+        )?;
+        Ok(Measurement { surfaces })
     }
 }
 

@@ -40,6 +40,16 @@ const AREAS_TO_EMBED: std::ops::Range<f64> = 800.0..1810.0;
 /// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
 const AREAS: std::ops::Range<f64> = 680.0..2150.0;
 
+/// The largest area of a surface in squares of the finest pitch that it is read at: a suspect's, times what undoing a smoothing may
+/// add. What is larger is left out.
+const LARGEST_AREA: f64 = 2150.0 * SPIKY_IF_FEW;
+
+/// A filtered surface that is so many times larger than the suspect has spikes, and is left out.
+const SPIKY: f64 = 1.6;
+
+/// The same for meshes of few triangles.
+const SPIKY_IF_FEW: f64 = 3.0;
+
 /// Pitches that a surface is read at, at most: no three of them have the area between these bounds.
 const MOST_PITCHES: usize = 2;
 
@@ -131,6 +141,9 @@ impl Lattice {
 
     /// What a lattice point holds: its dither, 0 to 1 in steps of the quantizer, and its symbol.
     fn at(&self, [i, j, k]: [i32; 3]) -> (f64, Symbol) {
+        // Points farther than this would share an address with nearer ones. A window sees clusters, which lie within the
+        // frame's extent, so there are none.
+        debug_assert!([i, j, k].iter().all(|index| index.abs() < 1 << 19));
         let part = |index: i32| (index + (1 << 19)) as u64 & ((1 << 20) - 1);
         let (dither, choice) = self.symbols.at(part(i) << 40 | part(j) << 20 | part(k));
         (unit(dither), Symbol::select(choice))
@@ -141,10 +154,24 @@ fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
+/// The phase, in turns, of a flux in steps of the quantizer under a dither. Whole steps are dropped first: a suspect may offer a
+/// flux of any size, and added to a large one the dither would be rounded away.
+fn phase(steps: f64, dither: f64) -> f64 {
+    fraction(steps) + dither
+}
+
+/// What is left of a number when the nearest whole one is taken off, -1/2 to 1/2, without any rounding.
+fn fraction(number: f64) -> f64 {
+    /// Adding and subtracting it rounds to the nearest whole number, for numbers up to a third of it.
+    const ROUND: f64 = 1.5 / f64::EPSILON;
+    /// Numbers beyond 2^50 count as this one, and so does what is no number: their fractions say nothing.
+    const MOST: f64 = 0.25 / f64::EPSILON;
+    let number = number.max(-MOST).min(MOST);
+    number - (number + ROUND - ROUND)
+}
+
 /// The cosine of an angle in turns, to within 1e-11, from additions and products alone: a detector takes millions of them.
 fn cosine(turns: f64) -> f64 {
-    /// Adding and subtracting it rounds to the nearest whole number.
-    const ROUND: f64 = 1.5 / f64::EPSILON;
     /// Of the sine of an angle in turns: `(-1)^n tau^(2n+1) / (2n+1)!`.
     const SERIES: [f64; 8] = {
         let mut series = [TAU; 8];
@@ -155,8 +182,42 @@ fn cosine(turns: f64) -> f64 {
         }
         series
     };
-    let beyond = (turns - (turns + ROUND - ROUND)).abs();
-    let quarter = 0.25 - beyond;
+    let quarter = 0.25 - fraction(turns).abs();
     let square = quarter * quarter;
     quarter * SERIES.iter().rev().fold(0.0, |sum, c| sum * square + c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{cosine, phase};
+
+    const STEPS: [f64; 9] = [
+        0.0,
+        -0.3,
+        1e6 + 0.25,
+        4e15,
+        -1e17,
+        1e300,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+
+    #[test]
+    fn no_flux_swallows_a_dither() {
+        for steps in STEPS {
+            let [none, some] = [0.0, 0.3].map(|dither| phase(steps, dither));
+            assert!((some - none - 0.3).abs() < 1e-15, "{steps}");
+            assert!((-0.5..=0.5).contains(&none), "{steps}");
+        }
+        assert_eq!(phase(1e6 + 0.25, 0.5), 0.75);
+    }
+
+    #[test]
+    fn cosines_stay_within_one() {
+        for turns in STEPS {
+            assert!(cosine(turns).abs() <= 1.0 + 1e-11, "{turns}");
+        }
+        assert!((cosine(7.125) - 0.5f64.sqrt()).abs() < 1e-11);
+    }
 }

@@ -2,7 +2,7 @@
 //! pilots alone, so that the other symbols, which never took part in the search, can testify without a charge for it.
 
 use super::flux::{Placement, Window};
-use super::{Lattice, cosine};
+use super::{Lattice, cosine, phase};
 use crate::code::Symbol;
 use crate::order::order_by;
 use crate::random::Random;
@@ -18,6 +18,10 @@ const EPSILON: f64 = 0.006;
 const TRIED: usize = 3000;
 const FOLLOWED: usize = 24;
 const CLIMBS: usize = 15;
+/// How far a climb goes along each freedom, at most: nine times as far as its widest nudges are tried, so that no attack that was
+/// ever read again comes near. Where fluxes hardly change, the linear model would otherwise lead anywhere: to lattices of no
+/// pitch, and of any number of points.
+const FARTHEST: f64 = 0.1;
 /// What is added to the curvature in every direction, as a share of its trace: turning a surface of revolution about its axis
 /// changes hardly anything, which is no reason to turn it far.
 const DAMPING: f64 = 1e-3;
@@ -141,7 +145,7 @@ impl Model {
         let mut model = vec![Pilots::default(); pilots.len().div_ceil(LANES)];
         for (number, (window, dither)) in pilots.iter().enumerate() {
             let some = &mut model[number / LANES];
-            some.phases[number % LANES] = window.flux / step + dither;
+            some.phases[number % LANES] = phase(window.flux / step, *dither);
             some.weights[number % LANES] = window.weight;
         }
         let num_moving = if start.strength > 0.0 {
@@ -207,7 +211,7 @@ impl Model {
             nudge
                 .iter_mut()
                 .zip(step)
-                .for_each(|(x, step)| *x += 0.35 * step);
+                .for_each(|(x, step)| *x = (*x + 0.35 * step).max(-FARTHEST).min(FARTHEST));
         }
         (self.agreement(&nudge), nudge)
     }

@@ -10,7 +10,7 @@ use super::flux::{Cluster, Placement, Window, windows};
 use super::measurement::{Axes, Origin, Surface};
 use super::refine::{View, refine};
 use super::strength::{FAMILIES, blend, weights};
-use super::{Lattice, MOST_PITCHES, STEPS, cosine};
+use super::{Lattice, MOST_PITCHES, STEPS, cosine, phase};
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
 use crate::detection::Statistic;
@@ -213,8 +213,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks at what lies between the last two surfaces of a family that are read at a pitch: the suspect is the first.
-    fn look_between(&mut self, family: u8, pitch: f64) {
+    /// The surfaces of a family that are read at a pitch, as indices of nodes, and their strengths: the suspect is the first.
+    fn family(&self, family: u8, pitch: f64) -> (Vec<usize>, Vec<f64>) {
         let strength_of = |node: &Node| match node.surface.origin {
             Origin::Suspect => Some(0.0),
             Origin::Filtered {
@@ -227,8 +227,12 @@ impl<'a> Search<'a> {
             let strength = strength_of(node).filter(|_| node.place(pitch).is_some());
             strength.map(|strength| (number, strength))
         };
-        let (nodes, strengths): (Vec<usize>, Vec<f64>) =
-            self.nodes.iter().enumerate().filter_map(of_pitch).unzip();
+        self.nodes.iter().enumerate().filter_map(of_pitch).unzip()
+    }
+
+    /// Looks at what lies between the last two surfaces of a family that are read at a pitch.
+    fn look_between(&mut self, family: u8, pitch: f64) {
+        let (nodes, strengths) = self.family(family, pitch);
         match strengths[..] {
             [.., low, high] => {
                 for part in 1..=STRENGTHS {
@@ -313,6 +317,17 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
+    /// A candidate, whose strength may now move among all that was measured of its family, not only to where it was met.
+    fn with_whole_family(&self, candidate: &Candidate) -> Candidate {
+        let last = candidate.nodes.last().map(|&node| &self.nodes[node]);
+        let mut candidate = candidate.clone();
+        if let Some(Origin::Filtered { family, .. }) = last.map(|node| node.surface.origin) {
+            let pitch = candidate.view.placement.pitch;
+            (candidate.nodes, candidate.strengths) = self.family(family, pitch);
+        }
+        candidate
+    }
+
     /// All windows of a candidate's surface at a view, by what each surface shows of a placement.
     fn see(
         &self,
@@ -343,7 +358,7 @@ impl<'a> Search<'a> {
             let weight = window.weight.max(0.0);
             SoftSymbol {
                 symbol,
-                value: weight * cosine(window.flux / step + dither),
+                value: weight * cosine(phase(window.flux / step, dither)),
                 weight,
             }
         };
@@ -379,9 +394,10 @@ impl<'a> Search<'a> {
             let Some(candidate) = candidate.filter(is_worth_it) else {
                 continue;
             };
-            let see = |view: &View| self.see(candidate, view, exact);
+            let candidate = self.with_whole_family(candidate);
+            let see = |view: &View| self.see(&candidate, view, exact);
             let view = refine(&see, &candidate.view, self.lattice, candidate.step);
-            let mut symbols = self.symbols(candidate, &view, see(&view));
+            let mut symbols = self.symbols(&candidate, &view, see(&view));
             symbols.retain(|soft| soft.symbol != Symbol::Pilot);
             hypotheses.push(Hypothesis {
                 symbols,
@@ -399,7 +415,10 @@ impl<'a> Search<'a> {
 fn evidence(pilots: &[Window], step: f64) -> f64 {
     let read = |pilot: &Window| {
         let weight = pilot.weight.max(0.0);
-        (weight * cosine(pilot.flux / step + pilot.dither), weight)
+        (
+            weight * cosine(phase(pilot.flux / step, pilot.dither)),
+            weight,
+        )
     };
     -Statistic::new(pilots.iter().map(read)).ln_p()
 }

@@ -4,7 +4,9 @@
 //! increasing order of their cells. A cluster: the distance of its cell's number from the one before (LEB128), its centre
 //! within the cell in 3 bytes, its area vector in 6, its moment in 2, its weight in 1. All integers are little-endian.
 
-use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, corner, number};
+use super::LARGEST_AREA;
+use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, MOST_CLUSTERS, corner, fits, number};
+use crate::carrier::{StoredError, possible, take};
 use glam::DVec3;
 use std::f64::consts::LN_2;
 
@@ -15,6 +17,9 @@ const LARGEST: f64 = 32_767.0;
 
 /// Steps in an octave of weights.
 const WEIGHTS: f64 = 16.0;
+
+/// Half a step of a weight is 2.2 %, and an area vector is as long as its area at most: what is stored may be so much longer.
+const SLACK: f64 = 1.03;
 
 /// The clusters of a surface, rounded.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,57 +130,93 @@ impl Store {
         }
     }
 
-    /// Takes a store whose clusters are fine enough for a pitch from the beginning of bytes; `None` if they are none.
-    pub fn read(bytes: &mut &[u8], pitch: f64) -> Option<Store> {
+    /// Takes a store whose clusters are fine enough for a pitch from the beginning of bytes.
+    ///
+    /// # Errors
+    /// Where they are none, or hold numbers that no surface gives.
+    pub fn read(bytes: &mut &[u8], pitch: f64) -> Result<Store, StoredError> {
         let area_unit = f32::from_le_bytes(take(bytes)?);
         let moment_unit = f32::from_le_bytes(take(bytes)?);
-        let count = u32::from_le_bytes(take(bytes)?);
-        let in_range = |number: f64| number > 0.0 && number < 1e6;
-        if !(in_range(area_unit.into()) && in_range(moment_unit.into())) {
-            return None;
-        }
-        let mut rounded = Vec::new();
-        let mut cell = 0u64;
-        for _ in 0..count {
-            let (mut gap, mut shift) = (0u64, 0);
-            loop {
-                let [byte] = take(bytes)?;
-                gap |= u64::from(byte & 0x7f).checked_shl(shift)?;
-                shift += 7;
-                if byte < 0x80 {
-                    break;
-                }
-            }
-            cell = cell.checked_add(gap)?;
-            let reach = corner(cell).abs().max_element() * pitch / CELLS_PER_PITCH;
-            if reach > EXTENT + pitch {
-                return None;
-            }
-            let offset = take(bytes)?;
-            let mut number = || Some(i16::from_le_bytes(take(bytes)?));
-            let area = [number()?, number()?, number()?];
-            let moment = number()?;
-            let [lightness] = take(bytes)?;
-            rounded.push(Rounded {
-                cell,
-                offset,
-                area,
-                moment,
-                lightness,
-            });
-        }
-        Some(Store {
+        let count = u32::from_le_bytes(take(bytes)?) as usize;
+        let mut store = Store {
             pitch,
             area_unit,
             moment_unit,
-            rounded,
-        })
+            rounded: Vec::new(),
+        };
+        let (area, largest) = (f64::from(area_unit), LARGEST_AREA * pitch * pitch);
+        possible(
+            area > 0.0 && area * LARGEST <= SLACK * largest,
+            "areas in a unit that no surface needs",
+        )?;
+        let moment = f64::from(moment_unit);
+        possible(
+            moment > 0.0 && moment <= 2.0 * store.cell() * area,
+            "moments in a unit that no surface needs",
+        )?;
+        possible(
+            count <= MOST_CLUSTERS,
+            "more pieces than are kept of a surface",
+        )?;
+        let mut cell = None;
+        for _ in 0..count {
+            let rounded = Rounded::read(bytes, cell)?;
+            cell = Some(rounded.cell);
+            let reach = corner(rounded.cell).abs().max_element() * store.cell();
+            possible(reach <= EXTENT + pitch, "a piece beyond the frame")?;
+            store.rounded.push(rounded);
+        }
+        let clusters = store.clusters();
+        let is_possible = |cluster: &Cluster| store.is_possible(cluster);
+        possible(
+            clusters.iter().all(is_possible),
+            "a piece with more flux than its area gives",
+        )?;
+        let total: f64 = clusters.iter().map(|cluster| cluster.weight).sum();
+        possible(
+            total <= SLACK * largest + area * count as f64,
+            "more area than is read at its pitch",
+        )?;
+        let centres = clusters.iter().map(|cluster| cluster.centre);
+        // Rounding moves centres a little.
+        possible(fits(centres, 1.01 * pitch), "pieces too far apart")?;
+        Ok(store)
+    }
+
+    /// Whether a piece of surface of its area, within its cell, can have its area vector and its moment, but for rounding.
+    fn is_possible(&self, cluster: &Cluster) -> bool {
+        let area = SLACK * cluster.weight + f64::from(self.area_unit);
+        let moment = 2.0 * self.cell() * area + f64::from(self.moment_unit);
+        cluster.area.length() <= area && cluster.moment.abs() <= moment
     }
 }
 
-/// The first bytes of some, which are taken off.
-pub fn take<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
-    let (first, rest) = bytes.split_first_chunk()?;
-    *bytes = rest;
-    Some(*first)
+impl Rounded {
+    /// Takes a cluster from the beginning of bytes that follows one in a cell.
+    fn read(bytes: &mut &[u8], last: Option<u64>) -> Result<Rounded, StoredError> {
+        let (mut gap, mut shift) = (0u64, 0);
+        loop {
+            let [byte] = take(bytes)?;
+            let part = u64::from(byte & 0x7f).checked_shl(shift);
+            gap |= part.ok_or(StoredError::Damaged)?;
+            shift += 7;
+            if byte < 0x80 {
+                break;
+            }
+        }
+        possible(last.is_none() || gap > 0, "two pieces in one cell")?;
+        let cell = last.unwrap_or_default().checked_add(gap);
+        let offset = take(bytes)?;
+        let mut number = || Ok(i16::from_le_bytes(take(bytes)?));
+        let area = [number()?, number()?, number()?];
+        let moment = number()?;
+        let [lightness] = take(bytes)?;
+        Ok(Rounded {
+            cell: cell.ok_or(StoredError::Damaged)?,
+            offset,
+            area,
+            moment,
+            lightness,
+        })
+    }
 }

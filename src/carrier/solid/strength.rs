@@ -85,8 +85,13 @@ impl Family {
     }
 }
 
-/// Up to three nodes about a strength, with the weights by which a parabola through them is read there. Nodes ascend.
+/// Up to three nodes about a strength, with the weights by which a parabola through them is read there. Nodes ascend. Below the
+/// first and above the last nothing was measured: there the parabola would lead to fluxes that no surface has, so these are read.
 pub fn weights(nodes: &[f64], strength: f64) -> Vec<(usize, f64)> {
+    let [first, .., last] = nodes else {
+        return nodes.iter().map(|_| (0, 1.0)).collect();
+    };
+    let strength = strength.max(*first).min(*last);
     let upper = nodes.partition_point(|node| *node < strength);
     let end = (upper + 1).max(3).min(nodes.len());
     let near = end.saturating_sub(3)..end;

@@ -1,0 +1,276 @@
+//! The bound against suspects that were made to break it: each would if two terms of a test shared a dither, or if a number of the
+//! suspect could swallow one. Every test of every way of reading is held against its own bound, at every decade.
+
+use glam::DVec3;
+use meshmark::carrier::{Reading, ring, solid};
+use meshmark::code::{Checked, Codeword, SoftSymbol, Symbol};
+use meshmark::detection::Statistic;
+use meshmark::mesh::{Mesh, shapes};
+use meshmark::{Key, Payload, ignore};
+use sha2::{Digest, Sha256};
+use std::f64::consts::LN_10;
+
+const DECADES: usize = 6;
+
+/// Keys without an end.
+fn random_key(number: u64) -> Key {
+    Key::from_bytes(&Sha256::digest(number.to_le_bytes())).unwrap()
+}
+
+/// How many tests there were, and how many of them had a bound below that of each decade.
+#[derive(Default)]
+struct Tails {
+    tests: u64,
+    below: [u64; DECADES],
+}
+
+impl Tails {
+    /// Counts what each way of reading gives: the pilots alone, the others against a payload, and all against it.
+    fn count(&mut self, reading: &Reading, key: &Key) {
+        let payload = Payload::from_number(123_456_789).unwrap();
+        let codeword = Codeword::new(Checked::new(key).message(payload));
+        for hypothesis in &reading.hypotheses {
+            let ln_p = |chosen: fn(&SoftSymbol) -> bool| {
+                let chosen = hypothesis.symbols.iter().filter(|soft| chosen(soft));
+                let sign = |symbol| codeword.sign(symbol);
+                Statistic::new(chosen.map(|soft| (soft.value * sign(soft.symbol), soft.weight)))
+                    .ln_p()
+            };
+            self.add(ln_p(|soft| soft.symbol == Symbol::Pilot));
+            self.add(ln_p(|soft| soft.symbol != Symbol::Pilot));
+            self.add(ln_p(|_| true));
+        }
+    }
+
+    fn add(&mut self, ln_p: f64) {
+        self.tests += 1;
+        for (decade, below) in self.below.iter_mut().enumerate() {
+            *below += u64::from(ln_p <= -LN_10 * (decade + 1) as f64);
+        }
+    }
+
+    /// No more tests below a bound than it says, but for chance: four standard deviations, and one. Tests of one key are not
+    /// independent, so that chance is given the room of as many keys as there were tests in `ways`.
+    fn hold(&self, name: &str, ways: f64) {
+        let mut expected = self.tests as f64;
+        for (decade, &below) in self.below.iter().enumerate() {
+            expected /= 10.0;
+            let allowed = expected + 4.0 * (expected * ways).sqrt() + ways;
+            assert!(
+                below as f64 <= allowed,
+                "{name}: {below} of {} tests below 1e-{}, bound {expected}",
+                self.tests,
+                decade + 1
+            );
+        }
+        assert!(self.below[0] > 0, "{name}: nothing was tested");
+    }
+}
+
+/// A ring as evidence has it.
+fn ring(connectivity: u64, geometry: u64, cell: [i16; 3], offset: f32) -> Vec<u8> {
+    let cell = cell.map(i16::to_le_bytes).concat();
+    [
+        &connectivity.to_le_bytes()[..],
+        &geometry.to_le_bytes(),
+        &cell,
+        &offset.to_le_bytes(),
+    ]
+    .concat()
+}
+
+/// Ten to the fifth keys against rings.
+fn hold_rings(name: &str, rings: impl Iterator<Item = Vec<u8>>) {
+    let bytes: Vec<u8> = rings.flatten().collect();
+    let measurement = ring::Measurement::from_bytes(&bytes).unwrap();
+    let mut tails = Tails::default();
+    for number in 0..100_000 {
+        let key = random_key(number);
+        let reading = measurement.read(&key);
+        for hypothesis in &reading.hypotheses {
+            let largest = |soft: &SoftSymbol| soft.value.abs() - soft.weight;
+            assert!(hypothesis.symbols.iter().all(|soft| largest(soft) < 1e-12));
+        }
+        tails.count(&reading, &key);
+    }
+    tails.hold(name, 10.0);
+}
+
+/// Cells whose addresses are equal: the hash of the first two numbers differs by 229 between the two columns, and the third number
+/// is added to it.
+#[test]
+fn bound_holds_where_two_cells_have_one_address() {
+    let pairs = (0..100i16).flat_map(|z| {
+        let offset = 0.04 * f32::from(z) / 37.0;
+        let own = u64::from(z.unsigned_abs());
+        [
+            ring(own, own, [1825, 4489, z + 229], offset),
+            ring(own, own, [-3170, -4529, z], offset),
+        ]
+    });
+    hold_rings("colliding cells", pairs);
+}
+
+/// Each cell also as it is seen in the other turns of the frame, as a mirrored model has it.
+#[test]
+fn bound_holds_for_mirrored_halves() {
+    let mirrored = (0..30i16).flat_map(|i| {
+        let (cell, offset) = ([i % 5, i / 5 % 5, i / 25], 0.003 * f32::from(i));
+        (0..8).map(move |side| {
+            let seen = |axis: usize| match side >> axis & 1 {
+                0 => cell[axis],
+                _ => !cell[axis],
+            };
+            let own = i.unsigned_abs().into();
+            ring(own, own, [seen(0), seen(1), seen(2)], offset)
+        })
+    });
+    hold_rings("mirrored halves", mirrored);
+}
+
+/// Each neighbourhood many times, in one cell and in several.
+#[test]
+fn bound_holds_for_repeated_parts() {
+    let repeated = (0..60i16).flat_map(|i| {
+        (0..12i16).map(move |copy| {
+            let own = i.unsigned_abs().into();
+            ring(own, own / 3, [i, copy % 3, 0], 0.001 * f32::from(copy % 7))
+        })
+    });
+    hold_rings("repeated parts", repeated);
+}
+
+/// Rings that cancel each other, but for some that do hardly; and offsets of every size.
+#[test]
+fn bound_holds_for_extreme_offsets() {
+    let extreme = (0..80i16).flat_map(|i| {
+        let (own, cell) = (u64::from(i.unsigned_abs()), [i % 20, i / 20, 32_000]);
+        let rest = if i % 8 == 0 { 1e-4 } else { 0.0 };
+        let large = [f32::MAX, 1e20, 16_777_216.0, f32::MIN_POSITIVE][i as usize % 4];
+        [
+            ring(own, own, cell, 0.01),
+            ring(own, own, cell, 0.03 + rest),
+            ring(own + 1000, own, [i, 1, -32_000], large),
+        ]
+    });
+    hold_rings("extreme offsets", extreme);
+}
+
+/// A rectangle of n x n squares, for each side of a box.
+fn box_of_sheets(n: u32, half: DVec3, place: impl Fn(usize, f64, [f64; 2]) -> DVec3) -> Mesh {
+    let mut mesh = Mesh::default();
+    for (axis, side) in (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| (axis, side))) {
+        let first = mesh.positions.len() as u32;
+        for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+            let across = [i, j].map(|step| 2.0 * f64::from(step) / f64::from(n) - 1.0);
+            mesh.positions.push(place(axis, side, across) * half);
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let at = |i: u32, j: u32| first + i * (n + 1) + j;
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            let halves = [[a, b, c], [a, c, d]];
+            mesh.triangles.extend(if side > 0.0 {
+                halves
+            } else {
+                halves.map(|[a, b, c]| [a, c, b])
+            });
+        }
+    }
+    mesh
+}
+
+fn on_axis(axis: usize, height: f64, [u, v]: [f64; 2]) -> DVec3 {
+    let mut point = [0.0; 3];
+    point[axis] = height;
+    point[(axis + 1) % 3] = u;
+    point[(axis + 2) % 3] = v;
+    DVec3::from_array(point)
+}
+
+fn box_shape(n: u32, half: DVec3) -> Mesh {
+    box_of_sheets(n, half, on_axis).welded()
+}
+
+fn moved(mesh: &Mesh, by: DVec3) -> Mesh {
+    mesh.with_positions(mesh.positions.iter().map(|p| *p + by).collect())
+}
+
+/// Six sides of a box, each two sheets a little apart that face each other: hardly any flux.
+fn doubled_sheets(apart: f64) -> Mesh {
+    let half = DVec3::new(1.0, 0.9, 0.8);
+    let sheet = |layer: f64| {
+        box_of_sheets(3, DVec3::ONE, move |axis, side, across| {
+            let place = on_axis(axis, side, across.map(|x| 0.9 * x)) * half;
+            place + on_axis(axis, layer * apart, [0.0; 2])
+        })
+    };
+    let [mut low, mut high] = [-0.5, 0.5].map(sheet);
+    // The lower sheet of a side faces down, the upper one up.
+    for (number, (low, high)) in low
+        .triangles
+        .iter_mut()
+        .zip(&mut high.triangles)
+        .enumerate()
+    {
+        let is_upper_side = number / 18 % 2 == 1;
+        if is_upper_side { low } else { high }.swap(1, 2);
+    }
+    Mesh::joined([low, high])
+}
+
+/// Some thousand keys against a mesh, as it is.
+fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
+    let plain: solid::Measurement = solid::Surfaces::new(mesh).plain().collect();
+    let plain = plain.for_many_keys();
+    let mut tails = Tails::default();
+    for number in 0..keys {
+        let key = random_key(number);
+        let mut reading = plain.read(&key, &mut ignore).unwrap();
+        // Of a split reading the pilots are not kept, and of a declared one the choice has seen them: the others testify.
+        for hypothesis in &mut reading.hypotheses {
+            hypothesis
+                .symbols
+                .retain(|soft| soft.symbol != Symbol::Pilot);
+        }
+        tails.count(&reading, &key);
+    }
+    tails.hold(name, 4.0);
+}
+
+#[test]
+fn bound_holds_for_regular_grids() {
+    hold_mesh("a box", &box_shape(16, DVec3::new(1.0, 0.8, 0.6)), 1_000);
+}
+
+#[test]
+fn bound_holds_for_identical_boxes() {
+    let part = box_shape(2, DVec3::new(0.05, 0.04, 0.03));
+    let places = (0..64).map(|i| DVec3::new((i % 4).into(), (i / 4 % 4).into(), (i / 16).into()));
+    let boxes = Mesh::joined(places.map(|place| moved(&part, place * DVec3::new(0.2, 0.16, 0.12))));
+    hold_mesh("identical boxes", &boxes, 1_000);
+}
+
+#[test]
+fn bound_holds_for_a_mirrored_pair() {
+    let half = shapes::asteroid(20, 30);
+    let mirrored = half
+        .positions
+        .iter()
+        .map(|p| DVec3::new(3.0 - p.x, p.y, p.z));
+    let mut other = half.with_positions(mirrored.collect());
+    other.triangles.iter_mut().for_each(|face| face.swap(1, 2));
+    hold_mesh("mirrored pair", &Mesh::joined([half, other]), 1_000);
+}
+
+#[test]
+fn bound_holds_without_flux() {
+    hold_mesh("doubled sheets", &doubled_sheets(5e-4), 1_000);
+}
+
+/// Sheets so near each other that fluxes hardly change as a lattice moves: what is sought by their slopes is sought far away. A pitch
+/// of nearly nothing ended the detector with this key.
+#[test]
+fn detector_ends_where_nothing_holds_it() {
+    let measurement = solid::Measurement::new(&doubled_sheets(1e-5));
+    assert!(measurement.read(&random_key(132), &mut ignore).is_ok());
+}

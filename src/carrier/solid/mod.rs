@@ -166,8 +166,14 @@ fn fraction(number: f64) -> f64 {
     const ROUND: f64 = 1.5 / f64::EPSILON;
     /// Numbers beyond 2^50 count as this one, and so does what is no number: their fractions say nothing.
     const MOST: f64 = 0.25 / f64::EPSILON;
-    let number = number.max(-MOST).min(MOST);
+    let number = held(number, MOST);
     number - (number + ROUND - ROUND)
+}
+
+/// A number, or the nearest in `-most..=most`. What is none becomes `-most`, where `clamp` would leave it: nothing that follows has
+/// to ask.
+fn held(number: f64, most: f64) -> f64 {
+    number.max(-most).min(most)
 }
 
 /// The cosine of an angle in turns, to within 1e-11, from additions and products alone: a detector takes millions of them.

@@ -2,7 +2,7 @@
 //! pilots alone, so that the other symbols, which never took part in the search, can testify without a charge for it.
 
 use super::flux::{Placement, Window};
-use super::{Lattice, cosine, phase};
+use super::{Lattice, cosine, held, phase};
 use crate::code::Symbol;
 use crate::order::order_by;
 use crate::random::Random;
@@ -211,7 +211,7 @@ impl Model {
             nudge
                 .iter_mut()
                 .zip(step)
-                .for_each(|(x, step)| *x = (*x + 0.35 * step).max(-FARTHEST).min(FARTHEST));
+                .for_each(|(x, step)| *x = held(*x + 0.35 * step, FARTHEST));
         }
         (self.agreement(&nudge), nudge)
     }

@@ -5,7 +5,7 @@
 use clap::{Args, Parser, Subcommand};
 use meshmark::attack::{Attack, CATALOGUE, Step, chain, step};
 use meshmark::detection::{LN_P_FOUND, union};
-use meshmark::document::{Document, DocumentError};
+use meshmark::document::Document;
 use meshmark::geometry::Quality;
 use meshmark::mesh::Mesh;
 use meshmark::scene::{Scene, to_glb};
@@ -15,6 +15,7 @@ use meshmark::{
     Strength, Verdict, detect, embed, extract, inspect, measure, note, verify,
 };
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::error::Error as StdError;
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::ops::ControlFlow;
@@ -511,23 +512,19 @@ fn read_keys(text: &str) -> Result<Vec<(String, Key)>, Failure> {
 fn open(path: &Path) -> Result<(Vec<u8>, Files), Failure> {
     let model = load(path)?;
     let mut files = Files::new();
-    loop {
-        match missing_file(&model, &files) {
-            Some(uri) if !files.contains_key(&uri) => {
-                let bytes = load(&sibling(path, &uri)?)?;
-                files.insert(uri, bytes);
-            }
-            _ => return Ok((model, files)),
+    let mut known = BTreeSet::new();
+    // A model that cannot be read names no files; whoever reads it next says what is wrong.
+    for uri in Document::file_names(&model).unwrap_or_default() {
+        let buffer = sibling(path, &uri)?;
+        // A small model could have a large file loaded as often as it finds another name for it.
+        if let Ok(place) = buffer.canonicalize()
+            && !known.insert(place)
+        {
+            return Err(format!("{uri:?} is the same file as another buffer's").into());
         }
+        files.insert(uri, load(&buffer)?);
     }
-}
-
-/// The first external buffer that is not among the files.
-fn missing_file(model: &[u8], files: &Files) -> Option<String> {
-    match Document::read(model, files) {
-        Err(DocumentError::MissingFile { uri, .. }) => Some(uri),
-        _ => None,
-    }
+    Ok((model, files))
 }
 
 /// A file beside another. A model's URIs are a stranger's words: they may not lead out of its folder.

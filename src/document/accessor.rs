@@ -133,9 +133,14 @@ impl Accessor {
         format!("/accessors/{}", self.index)
     }
 
-    /// Whether no buffer bounds the number of elements.
-    pub fn is_unbacked(&self) -> bool {
-        self.base.is_none()
+    /// The elements that are zero because they are stored nowhere: no data bounds their number.
+    pub fn num_unbacked(&self) -> usize {
+        let stored = match (&self.base, &self.sparse) {
+            (Some(_), _) => self.count,
+            (None, Some(sparse)) => sparse.values.count,
+            (None, None) => 0,
+        };
+        self.count.saturating_sub(stored)
     }
 
     /// The elements' places: the base elements and the sparse values.
@@ -148,6 +153,23 @@ impl Accessor {
     /// The places of the sparse indices.
     pub fn index_region(&self) -> Option<&Region> {
         self.sparse.as_ref().map(|sparse| &sparse.indices)
+    }
+
+    /// What `read` makes of the place of every element. Without a list of the places, if these follow from the element's number.
+    pub fn each<T>(
+        &self,
+        storages: &[Storage],
+        mut read: impl FnMut(usize, Option<Slot>) -> Result<T, DocumentError>,
+    ) -> Result<Vec<T>, DocumentError> {
+        match (&self.base, &self.sparse) {
+            (Some(base), None) => (0..self.count)
+                .map(|index| read(index, base.slot(index)))
+                .collect(),
+            _ => {
+                let slots = self.slots(storages)?.into_iter().enumerate();
+                slots.map(|(index, slot)| read(index, slot)).collect()
+            }
+        }
     }
 
     /// The place of every element, `None` for those that are zero because they are stored nowhere.

@@ -1,6 +1,9 @@
 //! The bytes behind the buffers of a document: read from wherever they are, patched in place.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+
+use serde_json::value::RawValue;
 
 use super::json::{self, FromJson, Place};
 use super::schema::Root;
@@ -30,10 +33,6 @@ impl Storage {
             original,
             patched: None,
         }
-    }
-
-    fn is_file(&self, key: &str) -> bool {
-        matches!(&self.origin, Origin::File(name) if name == key)
     }
 
     /// The current bytes.
@@ -72,6 +71,23 @@ pub(super) struct Buffer {
     pub length: u64,
 }
 
+/// The URI of a buffer that is an external file, as the JSON text states it.
+fn file_uri(uri: &RawValue, buffer: usize) -> Result<String, DocumentError> {
+    let buffers = Place::Field(&Place::Root, "buffers");
+    String::from_json(uri, Place::Field(&Place::Item(&buffers, buffer), "uri"))
+}
+
+/// The names of the external files, percent-decoded, each once.
+pub(super) fn file_names(root: &Root) -> Result<Vec<String>, DocumentError> {
+    let mut names = BTreeSet::new();
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        if let Some(uri) = buffer.uri.filter(|uri| !data_uri::is_data_uri(uri.get())) {
+            names.insert(data_uri::percent_decode(&file_uri(uri, index)?));
+        }
+    }
+    Ok(names.into_iter().collect())
+}
+
 /// Finds the bytes of all buffers.
 pub(super) fn resolve(
     root: &Root,
@@ -83,6 +99,7 @@ pub(super) fn resolve(
     let has_chunk = binary.is_some();
     storages.extend(binary.map(|bytes| Storage::new(Origin::Chunk, bytes)));
 
+    let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
     let mut buffers = Vec::with_capacity(root.buffers.len());
     for (index, buffer) in root.buffers.iter().enumerate() {
         let pointer = || format!("/buffers/{index}/uri");
@@ -111,13 +128,7 @@ pub(super) fn resolve(
                 storages.len().saturating_sub(1)
             }
             Some(uri) => {
-                let uri = String::from_json(
-                    uri,
-                    Place::Field(
-                        &Place::Item(&Place::Field(&Place::Root, "buffers"), index),
-                        "uri",
-                    ),
-                )?;
+                let uri = file_uri(uri, index)?;
                 let decoded = data_uri::percent_decode(&uri);
                 let (key, bytes) = files
                     .get_key_value(&decoded)
@@ -126,8 +137,7 @@ pub(super) fn resolve(
                         pointer: pointer(),
                         uri: decoded.clone(),
                     })?;
-                let known = storages.iter().position(|storage| storage.is_file(key));
-                known.unwrap_or_else(|| {
+                *by_name.entry(key).or_insert_with(|| {
                     storages.push(Storage::new(Origin::File(key.clone()), bytes.clone()));
                     storages.len().saturating_sub(1)
                 })

@@ -91,6 +91,25 @@ impl<'a, 'p> Object<'a, 'p> {
         Ok(self.optional(name)?.unwrap_or_default())
     }
 
+    /// A list that may be absent and has no more than `limit` items, which are counted before any of them is read.
+    pub fn at_most<T: FromJson<'a>>(
+        &self,
+        name: &str,
+        limit: usize,
+        what: &'static str,
+    ) -> Result<Vec<T>, DocumentError> {
+        let count = self.or_default::<Vec<&RawValue>>(name)?.len();
+        if count > limit {
+            return Err(DocumentError::TooLarge {
+                what,
+                value: count as u64,
+                limit: limit as u64,
+                pointer: Some(Place::Field(&self.place, name).to_string()),
+            });
+        }
+        self.or_default(name)
+    }
+
     fn missing(&self, name: &str) -> DocumentError {
         DocumentError::BadJson {
             detail: format!("\"{name}\" is missing"),

@@ -9,8 +9,13 @@ use super::json::escaped;
 use super::schema::{self, Root};
 use super::{DocumentError, item};
 
-/// The largest number of elements of an accessor without a buffer view, whose number no data bounds.
-const MAX_UNBACKED: usize = 1 << 20;
+/// The most elements of all accessors together that are stored nowhere, so that no data bounds their number. They are all the
+/// origin, or the first vertex: no model needs them, and a legal one has some under a sparse accessor.
+pub const MAX_UNBACKED: u64 = 1 << 20;
+
+/// The most positions of all accessors together, each accessor counted once: every one of them is looked at when a document is
+/// read and written, and many accessors may share the same bytes. Four times what the largest scene shows.
+const MAX_POSITIONS: u64 = 1 << 26;
 
 /// A set of primitives, placed by nodes.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,11 +39,13 @@ pub struct Primitive {
 
 /// The meshes of the file.
 pub(super) fn read(root: &Root, accessors: &[Accessor]) -> Result<Vec<Mesh>, DocumentError> {
+    let mut allowance = Allowance::new(accessors.len());
     let meshes = root.meshes.iter().enumerate().map(|(index, mesh)| {
         let primitives = mesh.primitives.iter().enumerate().map(|(part, primitive)| {
             read_primitive(
                 primitive,
                 accessors,
+                &mut allowance,
                 &format!("/meshes/{index}/primitives/{part}"),
             )
         });
@@ -52,6 +59,7 @@ pub(super) fn read(root: &Root, accessors: &[Accessor]) -> Result<Vec<Mesh>, Doc
 fn read_primitive(
     primitive: &schema::Primitive,
     accessors: &[Accessor],
+    allowance: &mut Allowance,
     pointer: &str,
 ) -> Result<Primitive, DocumentError> {
     let accessor = |index: u64, property: &str| {
@@ -73,6 +81,7 @@ fn read_primitive(
         let accessor = accessor(index, &format!("attributes/{}", escaped(name)))?;
         if name == "POSITION" {
             check_position(accessor)?;
+            allowance.take(accessor, true)?;
             position = Some(accessor.index);
         }
     }
@@ -80,6 +89,7 @@ fn read_primitive(
         Some(index) => {
             let indices = accessor(index, "indices")?;
             check_indices(indices)?;
+            allowance.take(indices, false)?;
             Some(indices.index)
         }
         None => None,
@@ -100,7 +110,7 @@ fn check_position(accessor: &Accessor) -> Result<(), DocumentError> {
                 .into(),
         });
     }
-    check_unbacked(accessor)
+    Ok(())
 }
 
 fn check_indices(accessor: &Accessor) -> Result<(), DocumentError> {
@@ -110,19 +120,73 @@ fn check_indices(accessor: &Accessor) -> Result<(), DocumentError> {
             detail: "vertex indices must be unsigned integers".into(),
         });
     }
-    check_unbacked(accessor)
+    Ok(())
 }
 
-fn check_unbacked(accessor: &Accessor) -> Result<(), DocumentError> {
-    if accessor.is_unbacked() && accessor.count > MAX_UNBACKED {
-        return Err(DocumentError::TooLarge {
-            what: "the number of vertices without data",
-            value: accessor.count as u64,
-            limit: MAX_UNBACKED as u64,
-            pointer: Some(format!("{}/count", accessor.pointer())),
-        });
+/// What the accessors of positions and indices have taken of what all of them may have together.
+struct Allowance {
+    is_taken: Vec<bool>,
+    positions: u64,
+    unbacked: u64,
+}
+
+impl Allowance {
+    fn new(num_accessors: usize) -> Self {
+        Self {
+            is_taken: vec![false; num_accessors],
+            positions: 0,
+            unbacked: 0,
+        }
     }
-    Ok(())
+
+    /// Counts an accessor, unless it was counted before.
+    fn take(&mut self, accessor: &Accessor, is_position: bool) -> Result<(), DocumentError> {
+        let taken = self.is_taken.get_mut(accessor.index);
+        if taken.is_none_or(|taken| std::mem::replace(taken, true)) {
+            return Ok(());
+        }
+        let positions = if is_position { accessor.count } else { 0 };
+        self.positions = self.positions.saturating_add(positions as u64);
+        let unbacked = accessor.num_unbacked() as u64;
+        self.unbacked = self.unbacked.saturating_add(unbacked);
+        let counts = [
+            (
+                "the number of vertices and indices without data, all accessors together,",
+                self.unbacked,
+                MAX_UNBACKED,
+            ),
+            (
+                "the number of vertices of all accessors together",
+                self.positions,
+                MAX_POSITIONS,
+            ),
+        ];
+        match counts.into_iter().find(|(_, value, limit)| value > limit) {
+            Some((what, value, limit)) => Err(DocumentError::TooLarge {
+                what,
+                value,
+                limit,
+                pointer: Some(format!("{}/count", accessor.pointer())),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The number of triangles of a primitive, degenerate ones included; nothing is read for it.
+pub(super) fn num_triangles(primitive: &Primitive, accessors: &[Accessor]) -> usize {
+    let position = primitive.position.and_then(|index| accessors.get(index));
+    let indices = primitive.indices.and_then(|index| accessors.get(index));
+    let corners = match (position, indices) {
+        (None, _) => 0,
+        (Some(_), Some(indices)) => indices.count,
+        (Some(position), None) => position.count,
+    };
+    match primitive.mode {
+        Mode::Triangles => corners.checked_div(3).unwrap_or(0),
+        Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => 0,
+    }
 }
 
 /// The triangles of a primitive as vertex indices, each below the number of vertices.
@@ -191,7 +255,7 @@ fn indexed_corners(
         }
         Ok(vertex)
     };
-    indices.slots(storages)?.into_iter().map(corner).collect()
+    indices.each(storages, |_, slot| corner(slot))
 }
 
 /// Triangles in the winding of the specification; vertices left over form none.

@@ -50,7 +50,7 @@ use self::splice::Splice;
 
 pub use self::container::Container;
 pub use self::error::DocumentError;
-pub use self::mesh::{Mesh, Primitive};
+pub use self::mesh::{MAX_UNBACKED, Mesh, Primitive};
 pub use self::node::{Node, Transform};
 pub use self::region::Slot;
 pub use gltf::json::mesh::Mode;
@@ -119,7 +119,7 @@ impl Document {
         let meshes = mesh::read(&root, &accessors)?;
         let (nodes, roots) = node::read(&root)?;
         check_references(&root, &accessors, &views)?;
-        let sharing = Sharing::new(&root, &accessors, &views);
+        let sharing = Sharing::new(&root, &accessors, &views)?;
         let is_sparse_position = |accessor: &&Accessor| {
             accessor.index_region().is_some() && sharing.is_position(accessor.index)
         };
@@ -139,6 +139,18 @@ impl Document {
             nodes,
             roots,
         })
+    }
+
+    /// The external buffers that a model file names, percent-decoded, each once: what [`read`](Self::read) wants to have as `files`.
+    ///
+    /// # Errors
+    ///
+    /// Any [`DocumentError`] that says so much of the file is malformed or unsupported, whatever the buffers hold.
+    pub fn file_names(model: &[u8]) -> Result<Vec<String>, DocumentError> {
+        let parts = container::split(model)?;
+        let root = Root::parse(&parts.text)?;
+        extension::check(&root)?;
+        buffer::file_names(&root)
     }
 
     /// Writes the document: byte for byte what was read, except for positions that are not what
@@ -221,12 +233,33 @@ impl Document {
     /// [`DocumentError::NonFinitePosition`].
     pub fn positions(&self, accessor: usize) -> Result<Vec<[f64; 3]>, DocumentError> {
         let accessor = self.position_accessor(accessor)?;
-        let slots = accessor.slots(&self.storages)?;
-        slots
-            .into_iter()
-            .enumerate()
-            .map(|(element, slot)| self.position(accessor, element, slot))
-            .collect()
+        accessor.each(&self.storages, |element, slot| {
+            self.position(accessor, element, slot)
+        })
+    }
+
+    /// The number of elements of a position accessor; nothing is read for it.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError::NotPositions`].
+    pub fn num_positions(&self, accessor: usize) -> Result<usize, DocumentError> {
+        Ok(self.position_accessor(accessor)?.count)
+    }
+
+    /// The number of triangles that [`triangles`](Self::triangles) gives; nothing is read for it. 0 if there is no such primitive.
+    pub fn num_triangles(&self, mesh: usize, primitive: usize) -> usize {
+        self.primitive(mesh, primitive).map_or(0, |primitive| {
+            mesh::num_triangles(primitive, &self.accessors)
+        })
+    }
+
+    /// The number of elements of an accessor that are zero because they are stored nowhere; nothing is read for it. 0 if there is no
+    /// such accessor.
+    pub fn num_unbacked(&self, accessor: usize) -> usize {
+        self.accessors
+            .get(accessor)
+            .map_or(0, Accessor::num_unbacked)
     }
 
     /// The values that positions of an accessor can take.
@@ -289,11 +322,7 @@ impl Document {
     /// [`DocumentError::PrimitiveRestart`], and [`DocumentError::BadAccessor`] for wrong sparse indices.
     pub fn triangles(&self, mesh: usize, primitive: usize) -> Result<Vec<[u32; 3]>, DocumentError> {
         let pointer = format!("/meshes/{mesh}/primitives/{primitive}");
-        match self
-            .meshes
-            .get(mesh)
-            .and_then(|mesh| mesh.primitives.get(primitive))
-        {
+        match self.primitive(mesh, primitive) {
             Some(primitive) => {
                 mesh::triangles(primitive, &self.accessors, &self.storages, &pointer)
             }
@@ -369,6 +398,10 @@ impl Document {
             }
         }
         Ok(())
+    }
+
+    fn primitive(&self, mesh: usize, primitive: usize) -> Option<&Primitive> {
+        self.meshes.get(mesh)?.primitives.get(primitive)
     }
 
     /// The accessor, if it holds positions.

@@ -1,6 +1,6 @@
 //! Malformed and unsupported files: each is refused with its code and the place.
 
-use meshmark::document::{Document, DocumentError, Files};
+use meshmark::document::{Document, DocumentError, Files, MAX_UNBACKED};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::gltf_builder::{
@@ -587,6 +587,104 @@ fn a_lying_count_without_data_allocates_nothing() {
         "document.too-large",
         Some("/accessors/0/count"),
     );
+}
+
+/// What is stored nowhere is allowed for all accessors together.
+#[wasm_bindgen_test(unsupported = test)]
+fn many_counts_without_data_are_refused_together() {
+    let with = |counts: &[u64]| {
+        let mut builder = GltfBuilder::new(Packing::Glb);
+        for count in counts {
+            let position = builder.accessor(format!(
+                r#"{{"componentType":5126,"count":{count},"type":"VEC3"}}"#
+            ));
+            // Twice, for an accessor that is used again takes no more.
+            builder.mesh(&vec![primitive(position, None, 4); 2]);
+        }
+        builder.build()
+    };
+    let Model { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2]);
+    assert_eq!(read(&bytes, &files), Ok(()));
+    let Model { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2, 1]);
+    assert_refused(
+        "one more",
+        &bytes,
+        &files,
+        "document.too-large",
+        Some("/accessors/2/count"),
+    );
+}
+
+/// Accessors of the same bytes, at `offset(i)` with `count(i)` elements of `stride(i)` bytes, each the positions of a primitive.
+fn overlapping(num_accessors: usize, view: impl Fn(usize) -> (usize, usize)) -> Model {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    builder.push(0, &vec![0; 240_000]);
+    builder.view(0, 0, 240_000, None);
+    let mut primitives = Vec::new();
+    for accessor in 0..num_accessors {
+        let (offset, count) = view(accessor);
+        let position = builder.accessor(format!(
+            r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5126,"count":{count},"type":"VEC3"}}"#
+        ));
+        primitives.push(primitive(position, None, 4));
+    }
+    builder.mesh(&primitives);
+    builder.build()
+}
+
+/// Many accessors of the same bytes are legal, but not so many that reading them takes for ever.
+#[wasm_bindgen_test(unsupported = test)]
+fn positions_of_the_same_bytes_are_limited() {
+    // Beginnings of one list, as levels of detail are: one use of their bytes.
+    let Model { bytes, files } = overlapping(200, |number| (0, 20_000 - number));
+    assert!(Document::read(&bytes, &files).is_ok());
+    // 200 times 19 900 elements, each of which overlaps elements of all 200.
+    let Model { bytes, files } = overlapping(200, |number| (4 * number, 19_900));
+    assert_refused(
+        "shifted",
+        &bytes,
+        &files,
+        "document.too-large",
+        Some("/accessors/134"),
+    );
+    // The same bytes 3400 times: 68 million vertices in 0.6 MB.
+    let Model { bytes, files } = overlapping(3400, |_| (0, 20_000));
+    assert_refused(
+        "repeated",
+        &bytes,
+        &files,
+        "document.too-large",
+        Some("/accessors/3355/count"),
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn too_many_nodes_are_refused() {
+    let nodes = vec!["{}"; (1 << 20) + 1].join(",");
+    let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}]}}"#);
+    assert_refused(
+        "nodes",
+        json.as_bytes(),
+        &Files::new(),
+        "document.too-large",
+        Some("/nodes"),
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn external_buffers_are_named_once() {
+    let mut builder = sound();
+    builder.buffers.push(vec![0; 4]);
+    let json = builder.json().replace("part%201.bin", "part%200.bin");
+    assert_eq!(
+        Document::file_names(json.as_bytes()),
+        Ok(vec!["part 0.bin".to_owned()])
+    );
+    let names = Document::file_names(builder.json().as_bytes());
+    assert_eq!(names.map(|names| names.len()), Ok(2));
+    let embedded = GltfBuilder::new(Packing::DataUri).build();
+    assert_eq!(Document::file_names(&embedded.bytes), Ok(Vec::new()));
+    assert!(Document::file_names(b"{").is_err());
 }
 
 #[wasm_bindgen_test(unsupported = test)]

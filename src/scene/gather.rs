@@ -1,25 +1,66 @@
 //! Document -> Scene.
 
-use super::{MAX_ELEMENTS, Placement, Scene, SceneError, orbits};
-use crate::document::{Document, Node, Transform};
+use super::{Count, Placement, Scene, SceneError, orbits};
+use crate::document::{Document, Node, Primitive, Transform};
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use std::collections::BTreeMap;
 
 impl Scene {
-    /// Gathers all triangles that a document's scenes show. O(n log n) in the number of elements.
+    /// Gathers all triangles that a document's scenes show. O(n log n) in the number of elements and triangles.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::TooLarge`] before anything is loaded, if the scene is beyond the limits that [`Count::check`] knows; the others
+    /// of [`SceneError`] after that.
     pub fn gather(document: &Document) -> Result<Scene, SceneError> {
-        let mut gathering = Gathering::default();
-        for (node, to_world) in placed_nodes(document) {
-            gathering.add(document, node, to_world)?;
+        let placed = placed_nodes(document);
+        let count = Count::new(document, placed.iter().map(|placed| placed.mesh))?;
+        count.check()?;
+        let drawn = drawn_parts(document);
+        let mut gathering = Gathering::with_room_for(&count);
+        for placed in placed {
+            let parts = drawn.get(placed.mesh).map_or(&[][..], Vec::as_slice);
+            gathering.add(document, &placed, parts)?;
         }
         gathering.weld(document)
     }
 }
 
+/// A node that shows a mesh.
+struct Placed {
+    node: usize,
+    mesh: usize,
+    to_world: DAffine3,
+}
+
+/// A primitive with triangles.
+struct Part {
+    primitive: usize,
+    /// Of its positions.
+    accessor: usize,
+}
+
+/// The primitives of each mesh that have triangles: nodes pass over the others, which may be many, together.
+fn drawn_parts(document: &Document) -> Vec<Vec<Part>> {
+    let drawn = |(mesh, primitives): (usize, &[Primitive])| {
+        let primitives = primitives.iter().enumerate();
+        let parts = primitives.filter_map(|(index, primitive)| {
+            (document.num_triangles(mesh, index) > 0).then_some(Part {
+                primitive: index,
+                accessor: primitive.position?,
+            })
+        });
+        parts.collect()
+    };
+    let meshes = document.meshes().iter();
+    let primitives = meshes.map(|mesh| mesh.primitives.as_slice());
+    primitives.enumerate().map(drawn).collect()
+}
+
 /// Every node that shows a mesh, with its transform to world space: depth first, in the document's order.
-fn placed_nodes(document: &Document) -> Vec<(usize, DAffine3)> {
+fn placed_nodes(document: &Document) -> Vec<Placed> {
     let nodes = document.nodes();
     let mut placed = Vec::new();
     let mut open: Vec<(usize, DAffine3)> = document
@@ -33,15 +74,16 @@ fn placed_nodes(document: &Document) -> Vec<(usize, DAffine3)> {
             continue;
         };
         let to_world = parent * local_transform(node);
-        if node.mesh.is_some() {
-            placed.push((
-                index,
-                if node.skin.is_some() {
+        if let Some(mesh) = node.mesh {
+            placed.push(Placed {
+                node: index,
+                mesh,
+                to_world: if node.skin.is_some() {
                     DAffine3::IDENTITY
                 } else {
                     to_world
                 },
-            ));
+            });
         }
         open.extend(node.children.iter().rev().map(|&child| (child, to_world)));
     }
@@ -64,41 +106,43 @@ fn local_transform(node: &Node) -> DAffine3 {
 }
 
 /// Placements and triangles before welding. A corner is (placement, element).
-#[derive(Default)]
 struct Gathering {
     placements: Vec<Placement>,
     worlds: Vec<Vec<DVec3>>,
-    triangles: Vec<(usize, [u32; 3])>,
+    triangles: Vec<(u32, [u32; 3])>,
 }
 
 impl Gathering {
+    /// The count was checked: nothing here is larger than a u32.
+    fn with_room_for(count: &Count) -> Gathering {
+        Gathering {
+            placements: Vec::new(),
+            worlds: Vec::new(),
+            triangles: Vec::with_capacity(count.triangles as usize),
+        }
+    }
+
     fn add(
         &mut self,
         document: &Document,
-        node: usize,
-        to_world: DAffine3,
+        placed: &Placed,
+        parts: &[Part],
     ) -> Result<(), SceneError> {
-        let Some(mesh_index) = document.nodes().get(node).and_then(|node| node.mesh) else {
-            return Ok(());
-        };
-        let Some(mesh) = document.meshes().get(mesh_index) else {
-            return Ok(());
-        };
-        let turn = to_world.matrix3.determinant() < 0.0;
+        let turn = placed.to_world.matrix3.determinant() < 0.0;
         let mut by_accessor = BTreeMap::new();
-        for (primitive_index, primitive) in mesh.primitives.iter().enumerate() {
-            let Some(accessor) = primitive.position else {
-                continue;
-            };
-            let triangles = document.triangles(mesh_index, primitive_index)?;
-            if triangles.is_empty() {
-                continue;
-            }
+        for &Part {
+            primitive,
+            accessor,
+        } in parts
+        {
+            let triangles = document.triangles(placed.mesh, primitive)?;
             let placement = match by_accessor.get(&accessor) {
                 Some(&placement) => placement,
                 None => {
-                    by_accessor.insert(accessor, self.placements.len());
-                    self.place(document, node, accessor, to_world)?
+                    let placement = self.placements.len() as u32;
+                    by_accessor.insert(accessor, placement);
+                    self.place(document, placed, accessor)?;
+                    placement
                 }
             };
             self.triangles.extend(
@@ -113,21 +157,17 @@ impl Gathering {
     fn place(
         &mut self,
         document: &Document,
-        node: usize,
+        placed: &Placed,
         accessor: usize,
-        to_world: DAffine3,
-    ) -> Result<usize, SceneError> {
-        let locals = document.positions(accessor)?;
-        let num_elements: usize = self.worlds.iter().map(Vec::len).sum();
-        if num_elements.saturating_add(locals.len()) > MAX_ELEMENTS {
-            return Err(SceneError::TooLarge);
-        }
-        let worlds: Vec<DVec3> = locals
+    ) -> Result<(), SceneError> {
+        let to_world = placed.to_world;
+        let worlds: Vec<DVec3> = document
+            .positions(accessor)?
             .into_iter()
             .map(|p| to_world.transform_point3(DVec3::from_array(p)))
             .collect();
         if !worlds.iter().all(|world| world.is_finite()) {
-            return Err(SceneError::NotFinite { node });
+            return Err(SceneError::NotFinite { node: placed.node });
         }
         self.placements.push(Placement {
             accessor,
@@ -136,7 +176,7 @@ impl Gathering {
             vertices: vec![None; worlds.len()],
         });
         self.worlds.push(worlds);
-        Ok(self.placements.len() - 1)
+        Ok(())
     }
 
     fn weld(mut self, document: &Document) -> Result<Scene, SceneError> {
@@ -145,9 +185,9 @@ impl Gathering {
                 .iter()
                 .flat_map(|&(placement, triangle)| triangle.map(|element| (placement, element)))
         };
-        let world = |(placement, element): (usize, u32)| {
+        let world = |(placement, element): (u32, u32)| {
             self.worlds
-                .get(placement)
+                .get(placement as usize)
                 .and_then(|worlds| worlds.get(element as usize))
                 .copied()
                 .unwrap_or_default()
@@ -161,49 +201,55 @@ impl Gathering {
         let mut order = Vec::new();
         for corner in corners() {
             let seen = used
-                .get_mut(corner.0)
+                .get_mut(corner.0 as usize)
                 .and_then(|used| used.get_mut(corner.1 as usize));
             if seen.is_some_and(|seen| !std::mem::replace(seen, true)) {
                 order.push(corner);
             }
         }
+        // What is done with makes room: a scene at the limits has 2^24 elements.
+        drop(used);
         let places: Vec<[u64; 3]> = order.iter().map(|&corner| bits(world(corner))).collect();
         let place = |corner: u32| places.get(corner as usize);
-        let mut first = vec![0; order.len()];
+        let mut first: Vec<u32> = vec![0; order.len()];
         for group in order_by_words(&places).chunk_by(|&a, &b| place(a) == place(b)) {
             for &corner in group {
                 if let (Some(slot), Some(leader)) = (first.get_mut(corner as usize), group.first())
                 {
-                    *slot = *leader as usize;
+                    *slot = *leader;
                 }
             }
         }
 
+        drop(places);
+
         let mut positions = Vec::new();
         let mut vertices: Vec<u32> = Vec::with_capacity(order.len());
-        for (&(placement, element), (corner, &leader)) in order.iter().zip(first.iter().enumerate())
-        {
+        for (&element, (corner, &leader)) in order.iter().zip((0..).zip(&first)) {
             let vertex = if leader == corner {
-                positions.push(world((placement, element)));
+                positions.push(world(element));
                 (positions.len() - 1) as u32
             } else {
-                vertices.get(leader).copied().unwrap_or_default()
+                vertices.get(leader as usize).copied().unwrap_or_default()
             };
             vertices.push(vertex);
         }
         for (&(placement, element), &vertex) in order.iter().zip(&vertices) {
             let slot = self
                 .placements
-                .get_mut(placement)
+                .get_mut(placement as usize)
                 .and_then(|p| p.vertices.get_mut(element as usize));
             if let Some(slot) = slot {
                 *slot = Some(vertex);
             }
         }
+        drop((order, first, vertices, self.worlds));
         let triangles: Vec<[u32; 3]> = self
             .triangles
-            .iter()
-            .filter_map(|corners| welded(&self.placements, corners))
+            .into_iter()
+            .filter_map(|(placement, triangle)| {
+                welded(self.placements.get(placement as usize)?, triangle)
+            })
             .collect();
         if triangles.is_empty() {
             return Err(SceneError::NoTriangles);
@@ -221,16 +267,9 @@ impl Gathering {
 }
 
 /// The triangle's vertices, if they are three.
-fn welded(
-    placements: &[Placement],
-    &(placement, triangle): &(usize, [u32; 3]),
-) -> Option<[u32; 3]> {
-    let vertex = |element: u32| *placements.get(placement)?.vertices.get(element as usize)?;
-    let [a, b, c] = [
-        vertex(triangle[0])?,
-        vertex(triangle[1])?,
-        vertex(triangle[2])?,
-    ];
+fn welded(placement: &Placement, [a, b, c]: [u32; 3]) -> Option<[u32; 3]> {
+    let vertex = |element: u32| *placement.vertices.get(element as usize)?;
+    let [a, b, c] = [vertex(a)?, vertex(b)?, vertex(c)?];
     (a != b && b != c && c != a).then_some([a, b, c])
 }
 

@@ -7,20 +7,40 @@
 
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing)]
 
+mod count;
 mod gather;
 mod orbits;
 mod plain;
 mod scatter;
 mod uses;
 
+pub use count::Count;
 pub use plain::to_glb;
 
 use crate::document::DocumentError;
 use crate::mesh::{Admissible, Mesh};
 use glam::{DAffine3, DMat3};
 
-/// Elements of all placements together. Small files can ask for more, by showing the same bytes many times.
-pub const MAX_ELEMENTS: usize = 1 << 24;
+/// The most elements of position accessors that a scene may show, every instance counted. Small files can ask for more, by showing
+/// the same bytes many times.
+///
+/// Measured natively, as the most memory that a run of the command line held: loose triangles take up to 250 bytes for each of
+/// their elements (`embed`, 2.1 million elements), ribbons with a vertex for each triangle 330.
+pub const MAX_ELEMENTS: u64 = if IN_A_TAB { 1 << 22 } else { 1 << 24 };
+
+/// The most triangles that a scene may show, every instance counted.
+///
+/// Measured likewise: closed surfaces take up to 370 bytes for each of their triangles, half a vertex for each included
+/// (`measure`, 2.1 million triangles), triangles between few vertices 210 (`embed`, 2 million). So 2^24 triangles take up to 6 GiB,
+/// and in a browser tab, which has 4 GiB of addresses, 2^22 of them 1.5 GiB beside the copies of the file.
+pub const MAX_TRIANGLES: u64 = if IN_A_TAB { 1 << 22 } else { 1 << 24 };
+
+/// The most mesh parts that a scene may show: primitives, each as often as a node shows it. One of three vertices takes 800 bytes
+/// (`inspect`, 262 144 parts), so these take 0.8 GiB, and 0.2 GiB in a browser tab.
+pub const MAX_PARTS: u64 = if IN_A_TAB { 1 << 18 } else { 1 << 20 };
+
+/// Whether an address has 32 bits, as in WebAssembly.
+const IN_A_TAB: bool = cfg!(target_pointer_width = "32");
 
 /// Why there is no mesh in a document.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -38,9 +58,21 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
-    /// More than fits into a browser tab's memory.
-    #[error("the scene has more than {MAX_ELEMENTS} vertices, every instance counted")]
-    TooLarge,
+    /// More than [`MAX_TRIANGLES`], [`MAX_ELEMENTS`], [`MAX_PARTS`] or
+    /// [`MAX_UNBACKED`](crate::document::MAX_UNBACKED), every instance counted.
+    #[error(
+        "the scene has {value} {what}, every instance counted, and the limit is {limit}: {advice}"
+    )]
+    TooLarge {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        value: u64,
+        /// The largest number accepted.
+        limit: u64,
+        /// What helps.
+        advice: &'static str,
+    },
 }
 
 impl SceneError {
@@ -50,7 +82,7 @@ impl SceneError {
             SceneError::Document(error) => error.code(),
             SceneError::NoTriangles => "scene.no-triangles",
             SceneError::NotFinite { .. } => "scene.not-finite",
-            SceneError::TooLarge => "scene.too-large",
+            SceneError::TooLarge { .. } => "scene.too-large",
         }
     }
 }

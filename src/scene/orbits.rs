@@ -11,12 +11,22 @@ use std::collections::BTreeMap;
 /// Relative difference at which two ways to the same displacement count as one.
 const TOLERANCE: f64 = 1e-9;
 
-/// A displacement `d` of one vertex goes with `map d` of another.
+/// A displacement `d` of one vertex, as a placement shows it, goes with one of another. There are up to two for each element of a
+/// scene, so a link says whose its map is, and not the map.
 #[derive(Clone, Copy)]
 struct Link {
     from: u32,
     to: u32,
-    map: DMat3,
+    /// The placements of the two.
+    placements: [u32; 2],
+}
+
+impl Link {
+    /// The displacement of the second vertex is this map of the first one's; `None` where the first placement has no inverse.
+    fn map(&self, placements: &[Placement]) -> Option<DMat3> {
+        let [from, to] = self.placements.map(|index| placements.get(index as usize));
+        Some(to?.to_world.matrix3 * from?.to_local?)
+    }
 }
 
 /// The displacements that can be written: bytes that several nodes show link the instances of their vertices; vertices
@@ -34,7 +44,7 @@ pub fn admissible(
         if is_set(&visited, root) {
             continue;
         }
-        let (members, consistent) = orbit(root, &links);
+        let (members, consistent) = orbit(root, &links, placements);
         let vertices = || members.iter().map(|&(vertex, _)| vertex);
         vertices().for_each(|vertex| set(&mut visited, vertex));
         if !consistent || vertices().any(|vertex| is_set(&fixed, vertex)) {
@@ -57,13 +67,22 @@ fn unwritable(
     num_vertices: usize,
 ) -> Result<Vec<bool>, DocumentError> {
     let mut fixed = vec![false; num_vertices];
-    for placement in placements {
-        let held = document.fixed_elements(placement.accessor)?;
-        for (vertex, held) in placement.vertices.iter().zip(held) {
-            if let Some(vertex) = *vertex
-                && (held || placement.to_local.is_none())
-            {
-                set(&mut fixed, vertex);
+    // The placements of one accessor side by side: what is fixed in it is asked once, however often it is shown.
+    let order = order_by(placements.iter().map(|shown| shown.accessor as u64));
+    for shown in order.chunk_by(|a, b| a.0 == b.0) {
+        let mut shown = shown
+            .iter()
+            .filter_map(|&(_, index)| placements.get(index as usize))
+            .peekable();
+        let Some(first) = shown.peek() else { continue };
+        let held = document.fixed_elements(first.accessor)?;
+        for placement in shown {
+            for (vertex, held) in placement.vertices.iter().zip(&held) {
+                if let Some(vertex) = *vertex
+                    && (*held || placement.to_local.is_none())
+                {
+                    set(&mut fixed, vertex);
+                }
             }
         }
     }
@@ -83,30 +102,22 @@ fn set(flags: &mut [bool], vertex: u32) {
 /// The links between vertices that share an element's bytes, both ways, those from one vertex side by side.
 fn links(document: &Document, placements: &[Placement]) -> Result<Vec<Link>, DocumentError> {
     let mut links: Vec<Link> = Vec::new();
-    let linear = |placement: usize| {
-        let placement = placements.get(placement)?;
-        Some((placement.to_world.matrix3, placement.to_local?))
+    let has_inverse = |placement: u32| {
+        let placement = placements.get(placement as usize);
+        placement.is_some_and(|placement| placement.to_local.is_some())
     };
     for uses in uses(document, placements)?.chunk_by(|a, b| a.slot == b.slot) {
         let Some((first, others)) = uses.split_first() else {
             continue;
         };
         for other in others {
-            let (Some((to_world, to_local)), Some((other_to_world, other_to_local))) =
-                (linear(first.placement), linear(other.placement))
-            else {
-                continue;
-            };
-            links.push(Link {
-                from: first.vertex,
-                to: other.vertex,
-                map: other_to_world * to_local,
-            });
-            links.push(Link {
-                from: other.vertex,
-                to: first.vertex,
-                map: to_world * other_to_local,
-            });
+            if has_inverse(first.placement) && has_inverse(other.placement) {
+                links.extend([(first, other), (other, first)].map(|(from, to)| Link {
+                    from: from.vertex,
+                    to: to.vertex,
+                    placements: [from.placement, to.placement],
+                }));
+            }
         }
     }
     let order = order_by(links.iter().map(|link| u64::from(link.from))).into_iter();
@@ -116,7 +127,7 @@ fn links(document: &Document, placements: &[Placement]) -> Result<Vec<Link>, Doc
 }
 
 /// All vertices that are linked to a root, each once and with its map, and whether their links agree.
-fn orbit(root: u32, links: &[Link]) -> (Vec<(u32, DMat3)>, bool) {
+fn orbit(root: u32, links: &[Link], placements: &[Placement]) -> (Vec<(u32, DMat3)>, bool) {
     let mut maps = BTreeMap::from([(root, DMat3::IDENTITY)]);
     let mut open = vec![root];
     let mut consistent = true;
@@ -125,7 +136,10 @@ fn orbit(root: u32, links: &[Link]) -> (Vec<(u32, DMat3)>, bool) {
         let first = links.partition_point(|link| link.from < vertex);
         let from_here = links.get(first..).unwrap_or_default();
         for link in from_here.iter().take_while(|link| link.from == vertex) {
-            let reached = link.map * map;
+            let Some(step) = link.map(placements) else {
+                continue;
+            };
+            let reached = step * map;
             match maps.get(&link.to) {
                 Some(known) => consistent &= agree(known, &reached),
                 None => {

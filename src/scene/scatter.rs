@@ -4,6 +4,7 @@ use super::uses::uses;
 use super::{Scene, SceneError};
 use crate::document::Document;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 impl Scene {
     /// Displaces the document's elements as V admissible displacements of the vertices say. Each coordinate is rounded to
@@ -13,30 +14,27 @@ impl Scene {
         document: &mut Document,
         displacement: &[DVec3],
     ) -> Result<(), SceneError> {
-        let mut moves: Vec<Vec<(usize, DVec3)>> = vec![Vec::new(); self.placements.len()];
+        // By accessor, so that each is read and stored once, however often it is shown.
+        let mut moves: BTreeMap<usize, Vec<(u32, DVec3)>> = BTreeMap::new();
         for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
             // The displacement is admissible, so all uses of an element agree about it: the first moves it.
             let Some(first) = uses.first() else { continue };
-            let to_local = self
-                .placements
-                .get(first.placement)
-                .and_then(|placement| placement.to_local);
-            if let (Some(to_local), Some(d), Some(moves)) = (
-                to_local,
-                displacement.get(first.vertex as usize),
-                moves.get_mut(first.placement),
-            ) {
+            let placement = self.placements.get(first.placement as usize);
+            if let (Some(placement), Some(d)) = (placement, displacement.get(first.vertex as usize))
+                && let Some(to_local) = placement.to_local
+            {
+                let moves = moves.entry(placement.accessor).or_default();
                 moves.push((first.element, to_local * *d));
             }
         }
-        for (placement, moves) in self.placements.iter().zip(moves) {
-            let mut positions = document.positions(placement.accessor)?;
+        for (accessor, moves) in moves {
+            let mut positions = document.positions(accessor)?;
             for (element, d) in moves {
-                if let Some(position) = positions.get_mut(element) {
+                if let Some(position) = positions.get_mut(element as usize) {
                     *position = (DVec3::from_array(*position) + d).to_array();
                 }
             }
-            document.set_positions(placement.accessor, &positions)?;
+            document.set_positions(accessor, &positions)?;
         }
         Ok(())
     }

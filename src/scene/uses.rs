@@ -10,9 +10,9 @@ pub struct Use {
     /// The element's bytes: equal for elements, of whatever accessors, that are the same.
     pub slot: Slot,
     /// Index of the placement.
-    pub placement: usize,
+    pub placement: u32,
     /// Index of the element in the placement's accessor.
-    pub element: usize,
+    pub element: u32,
     /// The vertex that it is part of.
     pub vertex: u32,
 }
@@ -20,8 +20,9 @@ pub struct Use {
 /// All uses of stored elements, those of one slot side by side, placements ascending.
 pub fn uses(document: &Document, placements: &[Placement]) -> Result<Vec<Use>, DocumentError> {
     let mut uses: Vec<Use> = Vec::new();
-    for (placement, shown) in placements.iter().enumerate() {
-        let slots = document.slots(shown.accessor)?.into_iter().enumerate();
+    // A scene within its limits has fewer of each than a u32 can count.
+    for (placement, shown) in (0..).zip(placements) {
+        let slots = (0..).zip(document.slots(shown.accessor)?);
         uses.extend(
             slots
                 .zip(&shown.vertices)

@@ -4,8 +4,9 @@ use crate::support::fixtures::gallery;
 use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
 use glam::DVec3;
 use meshmark::document::Document;
+use meshmark::document::MAX_UNBACKED;
 use meshmark::mesh::{Edges, Mesh, shapes};
-use meshmark::scene::{MAX_ELEMENTS, Scene, to_glb};
+use meshmark::scene::{Count, MAX_ELEMENTS, MAX_PARTS, MAX_TRIANGLES, Scene, SceneError, to_glb};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn read(model: &Model) -> Document {
@@ -200,11 +201,171 @@ fn scene_too_large_to_hold_is_refused() {
     let position = builder.positions(0, Layout::F32, &points);
     let indices = builder.indices(0, Component::U16, &[0, 1, 2]);
     let mesh = builder.mesh(&[primitive(position, Some(indices), 4)]);
-    for _ in 0..MAX_ELEMENTS / points.len() + 1 {
+    for _ in 0..MAX_ELEMENTS as usize / points.len() + 1 {
         builder.node(&format!(r#"{{"mesh":{mesh}}}"#));
     }
+    assert_too_large(&builder, "vertices");
+}
+
+/// The scene is refused, for so many of what there are.
+fn assert_too_large(builder: &GltfBuilder, expected: &str) {
     let error = Scene::gather(&read(&builder.build())).unwrap_err();
     assert_eq!(error.code(), "scene.too-large");
+    let SceneError::TooLarge {
+        what, value, limit, ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    assert_eq!(what, expected);
+    assert!(value > limit);
+    let message = error.to_string();
+    for word in [what, &value.to_string(), &limit.to_string()] {
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+/// A mesh of three vertices, `num_primitives` times, each with as many of their indices.
+fn amplified(num_primitives: usize, num_indices: usize) -> GltfBuilder {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    let indices: Vec<u32> = (0..num_indices as u32).map(|place| place % 3).collect();
+    let indices = builder.indices(0, Component::U8, &indices);
+    builder.mesh(&vec![primitive(position, Some(indices), 4); num_primitives]);
+    builder
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_with_too_many_triangles_is_refused() {
+    let times = MAX_TRIANGLES as usize / 10_000 + 1;
+    let mut by_nodes = amplified(1, 30_000);
+    by_nodes.nodes = vec![r#"{"mesh":0}"#.to_owned(); times];
+    assert_too_large(&by_nodes, "triangles");
+    let mut by_primitives = amplified(times, 30_000);
+    by_primitives.node(r#"{"mesh":0}"#);
+    assert_too_large(&by_primitives, "triangles");
+    let mut by_both = amplified(100, 30_000);
+    by_both.nodes = vec![r#"{"mesh":0}"#.to_owned(); times / 100 + 1];
+    assert_too_large(&by_both, "triangles");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_with_too_many_parts_is_refused() {
+    let mut builder = amplified(1024, 3);
+    builder.nodes = vec![r#"{"mesh":0}"#.to_owned(); MAX_PARTS as usize / 1024 + 1];
+    assert_too_large(&builder, "mesh parts");
+}
+
+/// What is stored nowhere is allowed once, not once for each that shows it.
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_with_too_much_that_is_stored_nowhere_is_refused() {
+    let count = MAX_UNBACKED / 2;
+    let positions = format!(r#"{{"componentType":5126,"count":{count},"type":"VEC3"}}"#);
+    let indices = format!(r#"{{"componentType":5125,"count":{count},"type":"SCALAR"}}"#);
+    let shown = |accessor: &str, as_indices: bool, num_nodes: usize| {
+        let mut builder = GltfBuilder::new(Packing::Glb);
+        let points = builder.positions(0, Layout::F32, &TRIANGLE);
+        let nothing = builder.accessor(accessor.to_owned());
+        let (position, indices) = if as_indices {
+            (points, Some(nothing))
+        } else {
+            (nothing, None)
+        };
+        builder.mesh(&[primitive(position, indices, 4)]);
+        builder.nodes = vec![r#"{"mesh":0}"#.to_owned(); num_nodes];
+        builder
+    };
+    for (accessor, as_indices) in [(&positions, false), (&indices, true)] {
+        let twice = shown(accessor, as_indices, 2).build();
+        assert_eq!(
+            Scene::gather(&read(&twice)).unwrap_err(),
+            SceneError::NoTriangles
+        );
+        let thrice = shown(accessor, as_indices, 3);
+        assert_too_large(&thrice, "vertices and indices without data");
+    }
+}
+
+/// A sparse accessor over nothing is legal, and what it lists is stored.
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_of_sparse_positions_over_nothing_is_gathered() {
+    let points = [[0.0; 3], TRIANGLE[1], TRIANGLE[2]];
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.sparse_positions(0, Layout::F32, &points, &[1, 2], false);
+    let mesh = builder.mesh(&[primitive(position, None, 4)]);
+    builder.node(&format!(r#"{{"mesh":{mesh}}}"#));
+    let document = read(&builder.build());
+    assert_eq!(document.num_unbacked(position), 1);
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.mesh.triangles.len(), 1);
+    assert_eq!(scene.admissible.fixed, [0], "what is stored nowhere stays");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_counts_are_those_of_the_scene() {
+    let document = read(&gallery(Packing::Glb));
+    let nodes = document.nodes().iter();
+    let count = Count::new(&document, nodes.filter_map(|node| node.mesh)).unwrap();
+    let (mut triangles, mut elements, mut parts) = (0, 0, 0);
+    for mesh in document.nodes().iter().filter_map(|node| node.mesh) {
+        let mut accessors = Vec::new();
+        for (index, primitive) in document.meshes()[mesh].primitives.iter().enumerate() {
+            let here = document.triangles(mesh, index).unwrap().len();
+            assert_eq!(document.num_triangles(mesh, index), here);
+            triangles += here as u64;
+            if let Some(accessor) = primitive.position.filter(|_| here > 0) {
+                parts += 1;
+                if !accessors.contains(&accessor) {
+                    elements += document.positions(accessor).unwrap().len() as u64;
+                    accessors.push(accessor);
+                }
+            }
+        }
+    }
+    let expected = Count {
+        parts,
+        elements,
+        triangles,
+        unbacked: 0,
+    };
+    assert_eq!(count, expected);
+    assert!(parts > 0 && elements > parts && triangles > parts);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_counts_are_accepted_up_to_their_limits() {
+    let most = Count {
+        parts: MAX_PARTS,
+        elements: MAX_ELEMENTS,
+        triangles: MAX_TRIANGLES,
+        unbacked: MAX_UNBACKED,
+    };
+    assert_eq!(most.check(), Ok(()));
+    let beyond = [
+        Count {
+            parts: MAX_PARTS + 1,
+            ..most
+        },
+        Count {
+            elements: MAX_ELEMENTS + 1,
+            ..most
+        },
+        Count {
+            triangles: MAX_TRIANGLES + 1,
+            ..most
+        },
+        Count {
+            unbacked: MAX_UNBACKED + 1,
+            ..most
+        },
+        Count {
+            triangles: u64::MAX,
+            ..most
+        },
+    ];
+    for count in beyond {
+        assert_eq!(count.check().unwrap_err().code(), "scene.too-large");
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

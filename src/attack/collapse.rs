@@ -44,6 +44,9 @@ impl<P: Placement> Collapse<P> {
         let mut all_edges = 0;
         let queue = Queue::new(Edges::new(mesh).ends().filter_map(|ends| {
             all_edges += 1;
+            if !editable.is_small(ends) {
+                return None;
+            }
             let (_, cost) = placement.place(&editable, ends[0], ends[1])?;
             Some(Candidate::new(cost, ends, [0; 2]))
         }));
@@ -80,6 +83,9 @@ impl<P: Placement> Collapse<P> {
     /// Collapses an edge if it can be, and still costs what it did.
     fn take(&mut self, cheapest: &Candidate) {
         let [a, b] = cheapest.ends;
+        if !self.editable.is_small([a, b]) {
+            return;
+        }
         let Some((to, cost)) = self.placement.place(&self.editable, a, b) else {
             return;
         };
@@ -97,6 +103,9 @@ impl<P: Placement> Collapse<P> {
         self.ages[b as usize] += 1;
         for neighbour in self.editable.neighbours(a) {
             let ends = [a.min(neighbour), a.max(neighbour)];
+            if !self.editable.is_small(ends) {
+                continue;
+            }
             if let Some((_, cost)) = self.placement.place(&self.editable, ends[0], ends[1]) {
                 self.push(cost, ends);
             }

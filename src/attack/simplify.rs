@@ -52,7 +52,7 @@ impl Planes {
             let quadric = Quadric::plane(normal.normalize_or_zero(), through, area);
             face.iter().for_each(|&v| planes.add(v, &quadric));
             for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (face[i], face[j])) {
-                if editable.opposite(a, b).is_none() {
+                if editable.is_border_edge(a, b) {
                     let along = editable.at(b) - editable.at(a);
                     let across = along.cross(normal).normalize_or_zero();
                     let weight = BORDER_WEIGHT * along.length_squared();

@@ -13,8 +13,9 @@
 //! extensions that may concern positions are refused.
 //!
 //! All offsets and lengths of the file are checked while reading, before anything is allocated for
-//! them, so the memory used is a small multiple of the input's size. Malformed input is an error and
-//! never a panic.
+//! them, so the memory used is a small multiple of the input's size; what the file can ask for without
+//! data (nodes, elements that are stored nowhere, accessors of the same bytes) is limited. Malformed
+//! input is an error and never a panic.
 #![deny(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -1,6 +1,5 @@
 //! Integrals over a surface: as many sample points as a given resolution needs.
 
-use crate::mesh::Mesh;
 use glam::DVec3;
 
 /// One part of a triangle, seen from its centroid.
@@ -35,13 +34,15 @@ impl Quadrature {
         }
     }
 
-    /// The same for a mesh, of which there are to be no more parts than a number, or than its triangles: all splits are then less
-    /// deep, and some edges longer. Without a limit, a few kilobytes of needles cost as much as a scanned statue.
-    pub fn at_most(self, num_parts: u64, mesh: &Mesh) -> Quadrature {
+    /// The same for triangles that are to be no more parts than a number, or than they are: all splits are then less deep, and
+    /// some edges longer. Without a limit, a few kilobytes of needles cost as much as a scanned statue.
+    pub fn at_most(
+        self,
+        num_parts: u64,
+        triangles: impl Iterator<Item = [DVec3; 3]>,
+    ) -> Quadrature {
         let mut by_depth = [0u64; DEEPEST as usize + 1];
-        for &triangle in &mesh.triangles {
-            by_depth[self.depth(mesh.corners(triangle)) as usize] += 1;
-        }
+        triangles.for_each(|corners| by_depth[self.depth(corners) as usize] += 1);
         let parts = |deepest: u32| -> u64 {
             let by_depth = by_depth.iter().zip(0..);
             by_depth

@@ -26,7 +26,7 @@ pub const EXTENT: f64 = 4.0;
 
 /// Parts that a surface is split into, at most, unless it has more triangles. A fence of 640 triangles in long planks has 1.8
 /// million, the most of 41 models that artists made; the usual has 0.3 million.
-const MOST_PARTS: u64 = 1 << 22;
+pub const MOST_PARTS: u64 = 1 << 21;
 
 /// Clusters that are kept of a surface, at most, the heaviest. Of the same models none has more than 25 200, for the area of what
 /// is read is limited; needles without an area can be met in any number of cells.
@@ -54,7 +54,11 @@ pub struct Cluster {
 /// [`MOST_CLUSTERS`] and on [`fits`], not on the file.
 pub fn clusters(mesh: &Mesh, pose: &Pose, pitch: f64) -> Vec<Cluster> {
     let cell = pitch / CELLS_PER_PITCH;
-    let quadrature = Quadrature::new(EDGE * pitch * pose.size).at_most(MOST_PARTS, mesh);
+    let corners = mesh
+        .triangles
+        .iter()
+        .map(|&triangle| mesh.corners(triangle));
+    let quadrature = Quadrature::new(EDGE * pitch * pose.size).at_most(MOST_PARTS, corners);
     let to_frame = pose.axes.transpose() * (1.0 / (pose.size * pose.size));
     let mut cells = Cells::default();
     for &triangle in &mesh.triangles {

@@ -6,7 +6,7 @@
 //!
 //! Displacements along vertex normals alone, or weighted by area, reach little more than half the exponent at equal RMS.
 
-use super::flux::{EDGE, Grid, Placement, RADIUS, Window, for_each_near, sensitivity};
+use super::flux::{EDGE, Grid, MOST_PARTS, Placement, RADIUS, Window, for_each_near, sensitivity};
 use crate::geometry::{Pose, Quadrature};
 use crate::mesh::Mesh;
 use glam::DVec3;
@@ -118,7 +118,9 @@ impl<'a> Problem<'a> {
 
     /// How windows and moments answer to every vertex.
     fn push(&mut self, active: &[Window]) {
-        let quadrature = Quadrature::new(EDGE);
+        let triangles = self.triangles.iter();
+        let corners = triangles.map(|triangle| triangle.map(|v| self.positions[v as usize]));
+        let quadrature = Quadrature::new(EDGE).at_most(MOST_PARTS, corners);
         let positions = active
             .iter()
             .map(|window| DVec3::from_array(window.index.map(f64::from)));

@@ -292,3 +292,42 @@ fn triangles_without_neighbours_are_answered() {
     };
     answers("tiny", loose((0..8000).map(tiny)), &ENTRIES);
 }
+
+/// Balls at some places, and a speck at each corner of a cube around them.
+fn balls_and_specks(radius: f64, places: &[[f64; 3]], corner: f64) -> Mesh {
+    let put = |part: &Mesh, size: f64, place: DVec3| {
+        part.with_positions(part.positions.iter().map(|p| *p * size + place).collect())
+    };
+    let (ball, speck) = (
+        shapes::icosphere(2),
+        shapes::cuboid(DVec3::splat(0.01), [1; 3]),
+    );
+    let balls = places.iter().map(|&place| put(&ball, radius, place.into()));
+    let corners = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 2.0 - 1.0));
+    let specks = corners.map(|place| put(&speck, 1.0, DVec3::from_array(place) * corner));
+    Mesh::joined(balls.chain(specks))
+}
+
+/// The tables of a scan once covered all that lies between the specks.
+#[test]
+fn specks_far_from_what_is_read_are_answered() {
+    let of_tetrahedron = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ]
+    .map(|place| place.map(|x| x * 0.5774));
+    let of_cube: Vec<[f64; 3]> = (0..8)
+        .map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 1.1548 - 0.5774))
+        .collect();
+    for (name, radius, places) in [
+        ("tetrahedron", 0.25, &of_tetrahedron[..]),
+        ("cube", 0.19, &of_cube),
+    ] {
+        let model = to_glb(&balls_and_specks(radius, places, 3.5));
+        let folder = Folder::with(name, &model);
+        let report = folder.run("extract model.glb --key-file key");
+        assert_eq!(report["verdict"], "none", "{report}");
+    }
+}

@@ -1,6 +1,7 @@
 //! How often a key that marked nothing is told that it did: docs/FALSE_POSITIVES.md.
 
 use crate::case::Case;
+use crate::crafted;
 use crate::models::Model;
 use crate::plot::{Axis, curves};
 use crate::seed::Seed;
@@ -15,7 +16,7 @@ use std::fmt::Write;
 /// A part of the table: whose evidence, what is measured of it, and how many of all keys are tested against that.
 struct Part {
     title: &'static str,
-    models: &'static [&'static str],
+    suspects: Suspects,
     surfaces: usize,
     /// One in so many.
     share: u64,
@@ -52,10 +53,17 @@ const NEAR: [&str; 8] = [
     "capsule",
 ];
 
-const PARTS: [Part; 3] = [
+enum Suspects {
+    /// Each of these models unmarked, and marked and then attacked.
+    Models(&'static [&'static str]),
+    /// Those of [`crafted`].
+    Crafted,
+}
+
+const PARTS: [Part; 4] = [
     Part {
         title: "The suspect as it is",
-        models: &DISTINCT,
+        suspects: Suspects::Models(&DISTINCT),
         surfaces: 1,
         share: 1,
         from_tables: true,
@@ -63,7 +71,7 @@ const PARTS: [Part; 3] = [
     },
     Part {
         title: "With everything undone that may have been done to it",
-        models: &DISTINCT,
+        suspects: Suspects::Models(&DISTINCT),
         surfaces: usize::MAX,
         share: 500,
         from_tables: false,
@@ -71,10 +79,18 @@ const PARTS: [Part; 3] = [
     },
     Part {
         title: "Frames whose axes are hard to tell apart",
-        models: &NEAR,
+        suspects: Suspects::Models(&NEAR),
         surfaces: 1,
         share: 2000,
         from_tables: false,
+        rounds: 1,
+    },
+    Part {
+        title: "Suspects that were made to break the bound",
+        suspects: Suspects::Crafted,
+        surfaces: 1,
+        share: 1,
+        from_tables: true,
         rounds: 1,
     },
 ];
@@ -101,22 +117,12 @@ pub fn table(
     );
     let mut plot = String::new();
     for part in PARTS {
-        let suspects = suspects(models, &part, seed)?;
-        let (evidence, names): (Vec<Evidence>, Vec<String>) = suspects
-            .into_par_iter()
-            .map(|(name, mesh)| {
-                let evidence = Evidence {
-                    ring: ring::Measurement::new(&mesh),
-                    solid: solid::Surfaces::new(&mesh).take(part.surfaces).collect(),
-                };
-                let evidence = if part.from_tables {
-                    evidence.for_many_keys()
-                } else {
-                    evidence
-                };
-                (evidence, name)
-            })
-            .unzip();
+        let (names, evidence): (Vec<String>, Vec<Evidence>) = match part.suspects {
+            Suspects::Models(names) => measured(models, names, &part, seed)?,
+            Suspects::Crafted => crafted::suspects(),
+        }
+        .into_iter()
+        .unzip();
         let mut ln_ps: Vec<Vec<f64>> = vec![Vec::new(); evidence.len()];
         let each = (tests / part.share).div_ceil(evidence.len() as u64 * part.rounds);
         let mut section = String::new();
@@ -130,7 +136,7 @@ pub fn table(
                 ln_ps[number].extend(found);
             }
             section = document(&part, &names, &ln_ps);
-            if part.from_tables {
+            if part.rounds > 1 {
                 plot = tail(&names, &ln_ps);
             }
             write(&format!("{text}{section}"), &plot)?;
@@ -141,11 +147,34 @@ pub fn table(
     Ok(())
 }
 
-/// Each model of a part unmarked, and marked and then attacked.
-fn suspects(models: &[Model], part: &Part, seed: &Seed) -> Result<Vec<(String, Mesh)>, String> {
+/// What is measured of some models.
+fn measured(
+    models: &[Model],
+    names: &[&str],
+    part: &Part,
+    seed: &Seed,
+) -> Result<Vec<(String, Evidence)>, String> {
+    let measure = |(name, mesh): (String, Mesh)| {
+        let evidence = Evidence {
+            ring: ring::Measurement::new(&mesh),
+            solid: solid::Surfaces::new(&mesh).take(part.surfaces).collect(),
+        };
+        let evidence = if part.from_tables {
+            evidence.for_many_keys()
+        } else {
+            evidence
+        };
+        (name, evidence)
+    };
+    let suspects = suspects(models, names, seed)?;
+    Ok(suspects.into_par_iter().map(measure).collect())
+}
+
+/// Each model unmarked, and marked and then attacked.
+fn suspects(models: &[Model], names: &[&str], seed: &Seed) -> Result<Vec<(String, Mesh)>, String> {
     let cases: Vec<Case> = models
         .par_iter()
-        .filter(|model| part.models.contains(&&*model.name))
+        .filter(|model| names.contains(&&*model.name))
         .map(|model| Case::new(model, ("strong", Strength::STRONG), 0, seed))
         .collect::<Result<_, _>>()?;
     let name = |case: &Case, what: &str| format!("{}, {what}", case.model.name);

@@ -5,6 +5,7 @@
 mod baseline;
 mod case;
 mod cell;
+mod crafted;
 mod false_positives;
 mod found;
 mod grid;

@@ -59,10 +59,16 @@ impl Codeword {
 pub fn decode(symbols: &[SoftSymbol], list: usize) -> Vec<u64> {
     let trellis = Trellis::new(symbols);
     if list == 1 {
-        vec![trellis.best_path()]
+        vec![trellis.best_path(std::iter::empty())]
     } else {
         trellis.best_paths(list)
     }
+}
+
+/// The likeliest message whose first `num_known` bits are those of `known`, the highest first. Pilots are ignored.
+pub fn complete(symbols: &[SoftSymbol], known: u64, num_known: u32) -> u64 {
+    let known = (0..num_known).rev().map(|bit| known >> bit & 1 == 1);
+    Trellis::new(symbols).best_path(known)
 }
 
 /// The metric of every register's inner bits at every step, where the first and the last bit are equal; where they differ it is
@@ -96,8 +102,8 @@ impl Trellis {
         Trellis(steps)
     }
 
-    /// The likeliest message.
-    fn best_path(&self) -> u64 {
+    /// The likeliest message that begins with the bits that are known.
+    fn best_path(&self, mut known: impl Iterator<Item = bool>) -> u64 {
         let mut reached = [f64::NEG_INFINITY; STATES];
         reached[0] = 0.0;
         let choices: Vec<[bool; STATES]> = self
@@ -112,6 +118,12 @@ impl Trellis {
                     let (metric, [a, b]) = (metrics[inner], *from);
                     (low[inner], low_choice[inner]) = better(a + metric, b - metric);
                     (high[inner], high_choice[inner]) = better(a - metric, b + metric);
+                }
+                // A new bit enters at the top: it is 0 in the lower half of the states.
+                match known.next() {
+                    Some(true) => low.fill(f64::NEG_INFINITY),
+                    Some(false) => high.fill(f64::NEG_INFINITY),
+                    None => {}
                 }
                 reached = next;
                 choice

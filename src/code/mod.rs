@@ -7,7 +7,7 @@ pub mod run_length;
 mod text;
 
 pub use check::{CHECK_BITS, Checked};
-pub use convolutional::{Codeword, MESSAGE_BITS, decode};
+pub use convolutional::{Codeword, MESSAGE_BITS, complete, decode};
 pub use ldpc::{Block, Decoded};
 pub use text::{TextCheck, TextError};
 

@@ -50,9 +50,9 @@ pub use evidence::Evidence;
 pub use key::Key;
 pub use progress::{Cancelled, Progress, Stage, ignore};
 pub use watermark::{
-    CarrierCapacity, CarrierReading, EmbedOptions, EmbedReport, Embedding, Error, Extraction,
-    Forecast, Inspection, Level, Strength, Verdict, detect, embed, extract, inspect, measure, note,
-    verify,
+    CarrierCapacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
+    Extraction, Forecast, Input, Inspection, Level, Strength, Verdict, detect, embed, extract,
+    extract_many, inspect, measure, note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -40,14 +40,14 @@ pub struct Outcome {
 impl Outcome {
     fn new(read: &Extraction, payload: Payload, marked: &Mesh, suspect: &Mesh) -> Outcome {
         let of = |name: Carrier| {
-            let mut carriers = read.carriers.iter();
+            let mut carriers = read.details().carriers.iter();
             carriers
                 .find(|carrier| carrier.name == name)
                 .map_or(0.0, |carrier| carrier.ln_p)
         };
         Outcome {
             is_decoded: read.verdict == Verdict::Found && read.number == Some(payload.number()),
-            ln_p: read.ln_p,
+            ln_p: read.details().ln_p,
             solid: of(Carrier::Solid),
             ring: of(Carrier::Ring),
             triangles: suspect.triangles.len() as f64 / marked.triangles.len() as f64,

@@ -131,7 +131,11 @@ pub fn table(
                 let first = (number as u64 * part.rounds + round) * each;
                 let found: Vec<f64> = (first..first + each)
                     .into_par_iter()
-                    .map(|test| extract(evidence, &seed.key(part.title, test)).ln_p)
+                    .map(|test| {
+                        extract(evidence, &seed.key(part.title, test))
+                            .details()
+                            .ln_p
+                    })
                     .collect();
                 ln_ps[number].extend(found);
             }

@@ -120,7 +120,7 @@ fn mark(case: &Case) -> Mark {
             rms_rel: marked.report.rms_rel,
             max_rel: marked.report.max_rel,
             msdm: Quality::between(&case.host, &marked.mesh).msdm,
-            ln_p: marked.report.read_back.ln_p,
+            ln_p: marked.report.read_back.details().ln_p,
         });
     Mark {
         model: case.model.name.clone(),

@@ -4,15 +4,14 @@
 
 use clap::{Args, Parser, Subcommand};
 use meshmark::attack::{Attack, CATALOGUE, Step, chain, step};
-use meshmark::detection::{LN_P_FOUND, union};
 use meshmark::document::Document;
 use meshmark::geometry::Quality;
 use meshmark::mesh::Mesh;
 use meshmark::scene::{Scene, to_glb};
 use meshmark::study::{Preparation, study};
 use meshmark::{
-    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Key, Payload, Progress, Stage,
-    Strength, Verdict, detect, embed, extract, inspect, measure, note, verify,
+    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Input, Key, Payload, Progress,
+    Stage, Strength, Verdict, detect, embed, extract, extract_many, inspect, measure, note, verify,
 };
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -23,7 +22,7 @@ use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// What evidence begins with.
+/// What evidence begins with. A file is not read as evidence because it begins so: a suspect's maker would choose how it is judged.
 const EVIDENCE: &[u8] = b"MMEV";
 
 const FOUND: u8 = 0;
@@ -62,19 +61,23 @@ enum Command {
     },
     /// Read the mark of a key from a model, or from measured evidence
     Extract {
-        /// .glb, .gltf, or a file that `measure` wrote
-        input: PathBuf,
+        #[command(flatten)]
+        suspect: Suspect,
         #[command(flatten)]
         owner: Owner,
+        #[command(flatten)]
+        telling: Telling,
     },
     /// Test a model, or measured evidence, for an expected payload
     Verify {
-        /// .glb, .gltf, or a file that `measure` wrote
-        input: PathBuf,
+        #[command(flatten)]
+        suspect: Suspect,
         #[command(flatten)]
         owner: Owner,
         #[command(flatten)]
         payload: PayloadArgument,
+        #[command(flatten)]
+        telling: Telling,
     },
     /// Measure a model without a key; the evidence can be tested later, elsewhere
     Measure {
@@ -85,8 +88,8 @@ enum Command {
     },
     /// Test a model, or measured evidence, with a list of keys
     Test {
-        /// .glb, .gltf, or a file that `measure` wrote
-        input: PathBuf,
+        #[command(flatten)]
+        suspect: Suspect,
         /// File with a key in each line: 64 hexadecimal digits, and a name if you like
         #[arg(long, value_name = "FILE")]
         keys: PathBuf,
@@ -156,6 +159,24 @@ enum NoteCommand {
     },
 }
 
+/// What is read.
+#[derive(Args)]
+struct Suspect {
+    /// .glb or .gltf
+    input: PathBuf,
+    /// INPUT is no model but a file that `measure` wrote: only where you trust who wrote it
+    #[arg(long)]
+    evidence: bool,
+}
+
+/// What is told where nothing is found.
+#[derive(Args)]
+struct Telling {
+    /// Say how far each carrier agrees, whatever the verdict is. For the key's owner: dithers can be read off it
+    #[arg(long)]
+    details: bool,
+}
+
 /// Whose mark. Without a passphrase file or key file, MESHMARK_PASSPHRASE is used, or the passphrase is asked for.
 #[derive(Args)]
 struct Owner {
@@ -183,6 +204,14 @@ struct PayloadArgument {
 
 type Failure = Box<dyn StdError>;
 
+/// A file that `measure` wrote, where nobody asked for evidence.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{} is no model but evidence, a file that `measure` wrote; extract, verify and test read it with --evidence",
+    .0.display()
+)]
+struct NotAsked(PathBuf);
+
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -195,10 +224,14 @@ fn main() -> ExitCode {
         }
         Err(failure) => {
             let known = failure.downcast_ref::<Error>();
+            let code = match failure.is::<NotAsked>() {
+                true => "evidence.not-asked-for",
+                false => known.map_or("io", Error::code),
+            };
             let report = json!({
                 "verdict": "cannot-check",
                 "error": {
-                    "code": known.map_or("io", Error::code),
+                    "code": code,
                     "message": failure.to_string(),
                     "path": known.and_then(Error::pointer),
                 },
@@ -234,18 +267,25 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             store_all(&input, &output, &marked.model, &marked.files)?;
             Ok((report(&marked.report, clock)?, FOUND))
         }
-        Command::Extract { input, owner } => {
+        Command::Extract {
+            suspect,
+            owner,
+            telling,
+        } => {
             let key = owner.key()?;
-            judge(&examine(&input, &key, None, &mut clock)?, clock)
+            let extraction = examine(&suspect, &key, None, &mut clock)?;
+            judge(telling.of(extraction), clock)
         }
         Command::Verify {
-            input,
+            suspect,
             owner,
             payload,
+            telling,
         } => {
             let payload = payload.read()?;
             let key = owner.key()?;
-            judge(&examine(&input, &key, Some(payload), &mut clock)?, clock)
+            let extraction = examine(&suspect, &key, Some(payload), &mut clock)?;
+            judge(telling.of(extraction), clock)
         }
         Command::Measure { input, evidence } => {
             let (model, files) = open(&input)?;
@@ -253,8 +293,8 @@ fn run(command: Command) -> Result<(Value, u8), Failure> {
             store(&evidence, &bytes)?;
             Ok((report(&json!({ "bytes": bytes.len() }), clock)?, FOUND))
         }
-        Command::Test { input, keys } => {
-            let (readings, code) = test(&input, &keys, &mut clock)?;
+        Command::Test { suspect, keys } => {
+            let (readings, code) = test(&suspect, &keys, &mut clock)?;
             Ok((report(&readings, clock)?, code))
         }
         Command::Note {
@@ -333,8 +373,9 @@ fn gather(input: &Path) -> Result<Mesh, Failure> {
     Ok(Scene::gather(&document).map_err(Error::from)?.mesh)
 }
 
-fn judge(extraction: &Extraction, clock: Clock) -> Result<(Value, u8), Failure> {
-    Ok((report(extraction, clock)?, exit_code(extraction.verdict)))
+fn judge(extraction: Extraction, clock: Clock) -> Result<(Value, u8), Failure> {
+    let code = exit_code(extraction.verdict);
+    Ok((report(&extraction, clock)?, code))
 }
 
 fn exit_code(verdict: Verdict) -> u8 {
@@ -400,6 +441,26 @@ impl PayloadArgument {
     }
 }
 
+impl Telling {
+    fn of(&self, extraction: Extraction) -> Extraction {
+        match self.details {
+            true => extraction.with_details(),
+            false => extraction,
+        }
+    }
+}
+
+impl Suspect {
+    /// The evidence, where it was asked for.
+    fn evidence(&self) -> Result<Option<Evidence>, Failure> {
+        if !self.evidence {
+            return Ok(None);
+        }
+        let evidence = Evidence::from_bytes(&load(&self.input)?);
+        Ok(Some(evidence.map_err(Error::from)?))
+    }
+}
+
 impl Owner {
     fn key(&self) -> Result<Key, Failure> {
         let key = match (&self.key_file, &self.owner) {
@@ -426,16 +487,15 @@ impl Owner {
 
 /// Reads a model, or what was measured of one, with a key.
 fn examine(
-    input: &Path,
+    suspect: &Suspect,
     key: &Key,
     expected: Option<Payload>,
     clock: &mut Clock,
 ) -> Result<Extraction, Failure> {
-    let (model, files) = open(input)?;
-    if !model.starts_with(EVIDENCE) {
+    let Some(evidence) = suspect.evidence()? else {
+        let (model, files) = open(&suspect.input)?;
         return Ok(detect(&model, &files, key, expected, clock)?);
-    }
-    let evidence = Evidence::from_bytes(&model).map_err(Error::from)?;
+    };
     clock.start("test");
     Ok(match expected {
         Some(payload) => verify(&evidence, key, payload),
@@ -443,55 +503,60 @@ fn examine(
     })
 }
 
-/// Tests evidence with every key of a list. That there are many is charged: a name is not found by asking often enough.
-fn test(input: &Path, keys: &Path, clock: &mut Clock) -> Result<(Value, u8), Failure> {
-    let (model, files) = open(input)?;
-    let keys = read_keys(&String::from_utf8(load(keys)?)?)?;
-    let evidence = if model.starts_with(EVIDENCE) {
-        Evidence::from_bytes(&model).map_err(Error::from)?
-    } else {
-        measure(&model, &files, clock)?
+/// Tests a suspect with every key of a list. That there are many is charged: a name is not found by asking often enough.
+fn test(suspect: &Suspect, keys: &Path, clock: &mut Clock) -> Result<(Value, u8), Failure> {
+    let (names, keys) = read_keys(&String::from_utf8(load(keys)?)?)?;
+    let (evidence, input) = match suspect.evidence()? {
+        Some(evidence) => (evidence, Input::Evidence),
+        None => {
+            let (model, files) = open(&suspect.input)?;
+            (measure(&model, &files, clock)?, Input::Model)
+        }
     };
     clock.start("test");
-    let charge = libm::log(keys.len() as f64);
-    let mut code = NOT_FOUND;
-    let mut readings = Vec::new();
-    for (name, key) in &keys {
-        let extraction = extract(&evidence, key);
-        let ln_p = union(extraction.ln_p, charge);
-        let is_found = extraction.verdict == Verdict::Found && ln_p <= LN_P_FOUND;
-        if is_found {
-            code = FOUND;
-        }
-        readings.push(json!({
+    let extractions = extract_many(&evidence, &keys);
+    let is_found = |extraction: &Extraction| extraction.verdict == Verdict::Found;
+    let code = match extractions.iter().any(is_found) {
+        true => FOUND,
+        false => NOT_FOUND,
+    };
+    let row = |(name, extraction): (String, &Extraction)| match is_found(extraction) {
+        true => json!({
             "key": name,
-            "found": is_found,
-            "verdict": extraction.verdict,
+            "found": true,
             "tag": extraction.tag,
             "number": extraction.number,
-            "ln_p": ln_p,
-        }));
-    }
-    Ok((
-        json!({ "num_keys": keys.len(), "ln_charge": charge, "keys": readings }),
-        code,
-    ))
+            "ln_p": extraction.details().ln_p,
+        }),
+        false => json!({ "key": name, "found": false }),
+    };
+    let rows: Vec<Value> = names.into_iter().zip(&extractions).map(row).collect();
+    let readings = json!({
+        "input": input,
+        "num_keys": keys.len(),
+        "ln_charge": libm::log(keys.len() as f64),
+        "keys": rows,
+    });
+    Ok((readings, code))
 }
 
 /// Keys from lines of 64 hexadecimal digits, each with a name after them if it has one. Lines that are empty or begin with `#`
 /// say nothing.
-fn read_keys(text: &str) -> Result<Vec<(String, Key)>, Failure> {
-    let mut keys = Vec::new();
+fn read_keys(text: &str) -> Result<(Vec<String>, Vec<Key>), Failure> {
+    let (mut names, mut keys) = (Vec::new(), Vec::new());
     for (line, number) in text.lines().zip(1..) {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
         let (digits, name) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let bytes: Option<Vec<u8>> = (0..digits.len())
-            .step_by(2)
-            .map(|at| u8::from_str_radix(digits.get(at..at + 2)?, 16).ok())
-            .collect();
+        let digit = |c: char| c.to_digit(16).map(|digit| digit as u8);
+        let digits: Option<Vec<u8>> = digits.chars().map(digit).collect();
+        let bytes = digits.and_then(|digits| {
+            let (pairs, rest) = digits.as_chunks();
+            let bytes = pairs.iter().map(|[high, low]| high << 4 | low);
+            rest.is_empty().then(|| bytes.collect::<Vec<u8>>())
+        });
         let key = bytes.and_then(|bytes| Key::from_bytes(&bytes).ok());
         let key =
             key.ok_or_else(|| format!("line {number} of the keys is not 64 hexadecimal digits"))?;
@@ -500,17 +565,21 @@ fn read_keys(text: &str) -> Result<Vec<(String, Key)>, Failure> {
         } else {
             name.trim().to_owned()
         };
-        keys.push((name, key));
+        names.push(name);
+        keys.push(key);
     }
     if keys.is_empty() {
         return Err("there is no key in the list".into());
     }
-    Ok(keys)
+    Ok((names, keys))
 }
 
 /// A model and the external buffers that it names, which are looked for beside it.
 fn open(path: &Path) -> Result<(Vec<u8>, Files), Failure> {
     let model = load(path)?;
+    if model.starts_with(EVIDENCE) {
+        return Err(NotAsked(path.to_owned()).into());
+    }
     let mut files = Files::new();
     let mut known = BTreeSet::new();
     // A model that cannot be read names no files; whoever reads it next says what is wrong.

@@ -49,22 +49,13 @@ impl Statistic {
 
     /// `ln P <= -T^2 / sum w^2`, for one test declared in advance; 0 for a sum that is not positive.
     pub fn ln_p(&self) -> f64 {
-        exponent(self.sum, self.energy)
-    }
-
-    /// The smallest `ln_p` that these weights could give: that of perfect agreement.
-    pub fn ln_p_at_best(&self) -> f64 {
-        exponent(self.weight, self.energy)
-    }
-}
-
-/// Weights whose squares are too small or too large for a number say nothing.
-fn exponent(sum: f64, energy: f64) -> f64 {
-    if sum > 0.0 && energy.is_normal() {
-        let ratio = sum / energy.sqrt();
-        -ratio * ratio
-    } else {
-        0.0
+        // Weights whose squares are too small or too large for a number say nothing.
+        if self.sum > 0.0 && self.energy.is_normal() {
+            let ratio = self.sum / self.energy.sqrt();
+            -ratio * ratio
+        } else {
+            0.0
+        }
     }
 }
 

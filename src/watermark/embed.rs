@@ -53,6 +53,7 @@ pub fn embed(
     let read_back = detect(&written.model, &marked_files, key, None, progress)?;
     if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
         let addresses = read_back
+            .details()
             .carriers
             .iter()
             .map(|carrier| carrier.addresses)

@@ -1,7 +1,7 @@
 //! Measuring a suspect, and reading evidence with a key.
 
 use super::error::Error;
-use super::report::{CarrierReading, Extraction, Verdict};
+use super::report::{CarrierReading, Details, Extraction, Input, Kept, Verdict};
 use crate::bits::Payload;
 use crate::carrier::{self, Carrier, Hypothesis, ring, solid};
 use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
@@ -33,7 +33,19 @@ pub fn measure(
 
 /// Reads a payload from evidence, knowing only the key. The bound charges all 2^48 payloads.
 pub fn extract(evidence: &Evidence, key: &Key) -> Extraction {
-    read(evidence, key, None)
+    read(evidence, Reader::new(key, None, Input::Evidence), key)
+}
+
+/// Reads evidence with every key of a list, as [`extract`] does with one, and in their order.
+///
+/// That there are many is charged in everything that is said, verdicts and details: the probability that the mark of any
+/// of them is wrongly found is at most 1e-9.
+pub fn extract_many(evidence: &Evidence, keys: &[Key]) -> Vec<Extraction> {
+    let one = |key| {
+        let reader = Reader::new(key, None, Input::Evidence).one_of(keys.len());
+        read(evidence, reader, key)
+    };
+    keys.iter().map(one).collect()
 }
 
 /// Tests evidence for one payload that was expected before it was looked at.
@@ -41,8 +53,14 @@ pub fn extract(evidence: &Evidence, key: &Key) -> Extraction {
 /// A small p alone would say that the key is there, not that the payload is this one: copies of the same owner with other
 /// payloads share the pilots and many parities. So the payload counts as found only where decoding gives it, or where
 /// decoding gives none and the symbols other than pilots speak for it.
+///
+/// The payload must not come from the suspect, nor from a report of it, and payloads that are tried in turn add up as keys do.
 pub fn verify(evidence: &Evidence, key: &Key, expected: Payload) -> Extraction {
-    read(evidence, key, Some(expected))
+    read(
+        evidence,
+        Reader::new(key, Some(expected), Input::Evidence),
+        key,
+    )
 }
 
 /// Reads a suspect in one go, ending as soon as it is sure: a marked model is mostly found before anything but itself was
@@ -62,14 +80,14 @@ pub fn detect(
     let surfaces = solid::Surfaces::new(&mesh);
     step(progress, Stage::Test, 0.0)?;
     let solid = surfaces.read(key, progress)?;
-    let conclusion = Reader::new(key, expected).conclude(&solid, &ring);
+    let conclusion = Reader::new(key, expected, Input::Model).conclude(&solid, &ring);
     step(progress, Stage::Test, 1.0)?;
     Ok(conclusion)
 }
 
-fn read(evidence: &Evidence, key: &Key, expected: Option<Payload>) -> Extraction {
+fn read(evidence: &Evidence, reader: Reader, key: &Key) -> Extraction {
     let solid = evidence.solid.read(key, &mut ignore).unwrap_or_default();
-    Reader::new(key, expected).conclude(&solid, &evidence.ring.read(key))
+    reader.conclude(&solid, &evidence.ring.read(key))
 }
 
 /// A carrier's reading, and what else the verdict depends on. All bounds are charged for the carrier's own choices.
@@ -77,10 +95,18 @@ struct Reading {
     report: CarrierReading,
     /// Bound of the payload in the report.
     ln_p_payload: f64,
-    /// That bound if every symbol agreed.
-    ln_p_at_best: f64,
-    /// A payload that was decoded where another was expected.
-    other: Option<Payload>,
+    /// Whether the suspect offers enough for a payload to be read, whatever key it is read with.
+    is_enough: bool,
+    /// What was decoded where another payload was expected.
+    other: Option<Other>,
+}
+
+/// Another payload than the expected one.
+#[derive(Clone, Copy)]
+struct Other {
+    payload: Payload,
+    /// Its bound. It was not expected, so all 2^48 are charged, as in a blind reading.
+    ln_p: f64,
 }
 
 /// A payload and what speaks for it.
@@ -92,24 +118,45 @@ struct Candidate {
     ln_p: f64,
 }
 
+/// Logarithm of the number of payloads.
+const LN_PAYLOADS: f64 = Payload::BITS as f64 * LN_2;
+
+/// Logarithm of the number of carriers: one speaks for all, and which one is not known before.
+const LN_CARRIERS: f64 = LN_2;
+const _: () = assert!(Carrier::ALL.len() == 2);
+
 pub(super) struct Reader {
     check: Checked,
     expected: Option<Payload>,
+    input: Input,
+    /// Logarithm of the number of keys that the suspect is read with.
+    ln_num_keys: f64,
 }
 
 impl Reader {
-    pub(super) fn new(key: &Key, expected: Option<Payload>) -> Reader {
+    pub(super) fn new(key: &Key, expected: Option<Payload>, input: Input) -> Reader {
         Reader {
             check: Checked::new(key),
             expected,
+            input,
+            ln_num_keys: 0.0,
+        }
+    }
+
+    /// The same with one key of so many, which are charged.
+    fn one_of(self, num_keys: usize) -> Reader {
+        Reader {
+            ln_num_keys: libm::log(num_keys as f64),
+            ..self
         }
     }
 
     pub(super) fn conclude(&self, solid: &carrier::Reading, ring: &carrier::Reading) -> Extraction {
-        conclude(vec![
+        let readings = [
             self.read(Carrier::Solid, solid),
             self.read(Carrier::Ring, ring),
-        ])
+        ];
+        conclude(readings, self.input)
     }
 
     fn read(&self, name: Carrier, reading: &carrier::Reading) -> Reading {
@@ -119,7 +166,11 @@ impl Reader {
             self.expected,
         ) {
             (Some(decoded), Some(expected)) if decoded.payload != expected => {
-                (None, Some(decoded.payload))
+                let other = Other {
+                    payload: decoded.payload,
+                    ln_p: union(decoded.ln_p, LN_PAYLOADS),
+                };
+                (None, Some(other))
             }
             (Some(decoded), _) => (Some(decoded), None),
             (None, Some(expected)) => (
@@ -134,8 +185,11 @@ impl Reader {
         };
         let pilots = best(&|h| pilots(&h.symbols).ln_p());
         let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| candidate.ln_p);
-        // A payload is named where chance is excluded: among many candidates, a wrong one may pass its check bits.
-        let named = candidate.as_ref().filter(|_| ln_p_payload <= LN_P_FOUND);
+        // A payload is named where chance is excluded, as the verdict is found: whoever learns a payload that chance gave, and
+        // expects it from then on, no longer pays for having guessed it.
+        let named = candidate
+            .as_ref()
+            .filter(|_| union(ln_p_payload, LN_CARRIERS) <= LN_P_FOUND);
         let payload = named.map(|candidate| candidate.payload);
         Reading {
             report: CarrierReading {
@@ -152,9 +206,18 @@ impl Reader {
                     .unwrap_or(0),
             },
             ln_p_payload,
-            ln_p_at_best: best(&|h| {
-                against(&h.symbols, |_| 1.0).ln_p_at_best() + self.ln_guesses()
-            }),
+            is_enough: match name {
+                // The verdict must not say which addresses are a key's. A key owns a share of them, and n of equal weight that agree
+                // give ln p = -n: more is not to be hoped for.
+                Carrier::Ring => {
+                    let owned = reading.num_addresses as f64 / ring::SHARE as f64;
+                    let at_best = best(&|_| -owned + self.ln_guesses());
+                    union(at_best, LN_CARRIERS) <= LN_P_FOUND
+                }
+                // A surface is read at a pitch or not at all, which no key has a part in; one that is read has 680 squared pitches or
+                // more, and a window for each: some hundreds of nats, where a mark that can be found needs 70.
+                Carrier::Solid => reading.num_addresses > 0,
+            },
             other,
         }
     }
@@ -164,26 +227,27 @@ impl Reader {
         if self.expected.is_some() {
             0.0
         } else {
-            f64::from(Payload::BITS) * LN_2
+            LN_PAYLOADS
         }
     }
 
-    /// What a hypothesis is charged: its own share, and the number of tests that are made of it. These are the pilots alone and
-    /// all symbols against a payload; where a payload is expected, also the symbols that are no pilots against it.
+    /// What a hypothesis is charged: its own share, the number of tests that are made of it, and the number of keys. The tests are
+    /// the pilots alone and all symbols against a payload; where a payload is expected, also the symbols that are no pilots against
+    /// it. Another payload than the expected one is found by none of them: that it is named where it passes with the pilots'
+    /// share is a fourth event, which makes 1e-9 with the two that find.
     fn charge(&self, hypothesis: &Hypothesis) -> f64 {
         let tests = if self.expected.is_some() { 3.0 } else { 2.0 };
-        hypothesis.ln_num_tests + libm::log(tests)
+        hypothesis.ln_num_tests + libm::log(tests) + self.ln_num_keys
     }
 
     /// The likeliest payload whose check bits hold, if it stands out from what noise would give.
     fn decode(&self, hypothesis: &Hypothesis) -> Option<Candidate> {
         let (symbols, charge) = (&hypothesis.symbols, self.charge(hypothesis));
-        let guess = f64::from(Payload::BITS) * LN_2;
         let statistic = |message| {
             let codeword = Codeword::new(message);
             against(symbols, |symbol| codeword.sign(symbol))
         };
-        let stands_out = |all: &Statistic| union(all.ln_p() + guess, charge) <= LN_P_TRACE;
+        let stands_out = |all: &Statistic| union(all.ln_p() + LN_PAYLOADS, charge) <= LN_P_TRACE;
         // The likeliest message is mostly the right one, and where it does not stand out, none does.
         let likeliest = decode(symbols, 1);
         if !likeliest
@@ -237,62 +301,70 @@ fn against(symbols: &[SoftSymbol], sign: impl Fn(Symbol) -> f64) -> Statistic {
     )
 }
 
-/// One verdict from all carriers' readings; the choice between carriers is charged.
-fn conclude(readings: Vec<Reading>) -> Extraction {
-    let charge = libm::log(readings.len() as f64);
-    let best =
-        |ln_p: fn(&Reading) -> f64| union(readings.iter().map(ln_p).fold(0.0, f64::min), charge);
+/// One verdict from all carriers' readings; the choice between carriers is charged. Below `found` the words hold nothing that
+/// follows the key but the verdict.
+fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction {
+    let best = |ln_p: fn(&Reading) -> f64| {
+        union(readings.iter().map(ln_p).fold(0.0, f64::min), LN_CARRIERS)
+    };
     let ln_p = best(|reading| reading.report.ln_p);
-    let loudest = readings
-        .iter()
-        .min_by(|a, b| a.ln_p_payload.total_cmp(&b.ln_p_payload));
-    let report = loudest.map(|reading| &reading.report);
-    let other = readings.iter().find_map(|reading| reading.other);
-    let ln_p_payload = best(|reading| reading.ln_p_payload);
-    let tag = report.and_then(|report| report.tag.clone());
-    let number = report.and_then(|report| report.number);
-    let addresses: usize = readings
-        .iter()
-        .map(|reading| reading.report.addresses)
-        .sum();
-    let owned: usize = readings
-        .iter()
-        .map(|reading| reading.report.owned_addresses)
-        .sum();
-    let (verdict, reason) = if ln_p_payload <= LN_P_FOUND {
+    let [first, second] = &readings;
+    let loudest = if second.ln_p_payload < first.ln_p_payload {
+        second
+    } else {
+        first
+    };
+    let others = readings.iter().filter_map(|reading| reading.other);
+    let other = others.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let ln_p_other = other.map_or(0.0, |other| union(other.ln_p, LN_CARRIERS));
+    let CarrierReading {
+        tag,
+        number,
+        agreement,
+        ..
+    } = loudest.report.clone();
+    let (verdict, reason) = if best(|reading| reading.ln_p_payload) <= LN_P_FOUND {
         (Verdict::Found, None)
-    } else if let Some(other) = other {
-        let other = other.tag().unwrap_or_else(|| other.number().to_string());
+    } else if let Some(Other { payload, .. }) = other.filter(|_| ln_p_other <= LN_P_TRACE) {
+        let named = payload
+            .tag()
+            .unwrap_or_else(|| payload.number().to_string());
+        let name = if ln_p_other <= LN_P_FOUND {
+            format!(": {named}")
+        } else {
+            String::new()
+        };
         (
             Verdict::Partial,
             Some(format!(
-                "The model carries a mark of this key, but with another payload: {other}."
+                "The model carries a mark of this key, but with another payload{name}."
             )),
         )
     } else if ln_p <= LN_P_TRACE {
         let reason =
-            "Something of this key is there, but too little to read its payload with certainty."
-                .to_owned();
-        (Verdict::Partial, Some(reason))
-    } else if best(|reading| reading.ln_p_at_best) > LN_P_FOUND {
-        let reason = format!(
-            "The model offers {addresses} places for symbols, and {owned} of them are this key's: too few to tell."
-        );
-        (Verdict::CannotCheck, Some(reason))
+            "Something of this key is there, but too little to read its payload with certainty.";
+        (Verdict::Partial, Some(reason.to_owned()))
+    } else if !readings.iter().any(|reading| reading.is_enough) {
+        let reason = "The model offers too few places for symbols to tell.";
+        (Verdict::CannotCheck, Some(reason.to_owned()))
     } else {
-        let reason = format!(
-            "{owned} of the model's {addresses} places for symbols are this key's: they agree as by chance."
-        );
-        (Verdict::None, Some(reason))
+        let reason = "The places for symbols that are this key's agree as by chance.";
+        (Verdict::None, Some(reason.to_owned()))
     };
     Extraction {
         verdict,
+        input,
         sentence: verdict.sentence(),
         reason,
         tag,
         number,
-        ln_p,
-        agreement: report.map_or(0.0, |report| report.agreement),
-        carriers: readings.into_iter().map(|reading| reading.report).collect(),
+        details: Kept {
+            details: Details {
+                ln_p,
+                agreement,
+                carriers: readings.map(|reading| reading.report).to_vec(),
+            },
+            is_shown: verdict == Verdict::Found,
+        },
     }
 }

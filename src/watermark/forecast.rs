@@ -1,7 +1,7 @@
 //! What a mark is likely to survive: tried on the marked model itself.
 
 use super::extract::Reader;
-use super::{Extraction, Verdict};
+use super::{Extraction, Input, Verdict};
 use crate::attack::{crop, noise, quantize_evenly, simplify_on, smooth};
 use crate::bits::Payload;
 use crate::carrier::{Reading, ring, solid};
@@ -60,11 +60,11 @@ pub(super) fn forecast(
     progress: &mut dyn Progress,
 ) -> Result<Vec<Forecast>, Cancelled> {
     let host = solid::Surfaces::new(host);
-    let reader = Reader::new(key, None);
+    let reader = Reader::new(key, None, Input::Model);
     let forecast = |attack, found: &Extraction| Forecast {
         attack,
         level: level(found, payload),
-        ln_p: found.ln_p,
+        ln_p: found.details().ln_p,
     };
     let mut forecasts = vec![forecast("none", read_back)];
     let num_names: usize = ATTACKS.iter().map(|(names, _)| names.len()).sum();
@@ -93,7 +93,7 @@ pub(super) fn forecast(
 
 fn level(found: &Extraction, payload: Payload) -> Level {
     let is_right = found.verdict == Verdict::Found && found.number == Some(payload.number());
-    match found.ln_p {
+    match found.details().ln_p {
         ln_p if is_right && ln_p <= 2.0 * LN_P_FOUND => Level::Green,
         _ if is_right => Level::Amber,
         _ => Level::Red,

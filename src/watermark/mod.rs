@@ -11,8 +11,8 @@ mod report;
 
 pub use embed::{Embedding, embed};
 pub use error::Error;
-pub use extract::{detect, extract, measure, verify};
+pub use extract::{detect, extract, extract_many, measure, verify};
 pub use forecast::{Forecast, Level};
 pub use inspect::{CarrierCapacity, Inspection, inspect};
 pub use options::{EmbedOptions, Strength};
-pub use report::{CarrierReading, EmbedReport, Extraction, Verdict};
+pub use report::{CarrierReading, Details, EmbedReport, Extraction, Input, Verdict};

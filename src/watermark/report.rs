@@ -2,7 +2,7 @@
 
 use super::Forecast;
 use crate::carrier::Carrier;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The answer to "does this model carry this key's mark?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -52,26 +52,79 @@ pub struct CarrierReading {
     pub owned_addresses: usize,
 }
 
-/// A reading of evidence with a key.
+/// What was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Input {
+    /// A model, measured here.
+    Model,
+    /// Evidence: what somebody says that they measured of a model.
+    Evidence,
+}
+
+/// A reading with a key.
+///
+/// What may be said of it to anybody are the fields that can be seen. What else there is follows the key, and is
+/// [`details`](Self::details): as JSON it is there where the verdict is found, else only after [`with_details`](Self::with_details).
+/// `Debug` prints it always.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Extraction {
     /// The answer.
     pub verdict: Verdict,
+    /// What was read.
+    pub input: Input,
     /// The answer in words.
     pub sentence: &'static str,
-    /// Why it is not `found`.
+    /// Why it is not `found`: words without a number that follows the key.
     pub reason: Option<String>,
-    /// The payload as a tag.
+    /// The payload as a tag, where it is found.
     pub tag: Option<String>,
-    /// The payload as a number.
+    /// The payload as a number, where it is found.
     pub number: Option<u64>,
+    #[serde(flatten)]
+    pub(super) details: Kept,
+}
+
+/// What follows the key in a reading.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Details {
     /// Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0.
     pub ln_p: f64,
     /// Agreement of the carrier that speaks loudest.
     pub agreement: f64,
     /// Every carrier's own reading.
     pub carriers: Vec<CarrierReading>,
+}
+
+impl Extraction {
+    /// What follows the key: for its owner, and for nobody who may ask about suspects of their own making.
+    ///
+    /// The agreement of a suspect with one address says whether the key owns it, and at two features what its dither is. Some
+    /// hundreds of such answers are enough to make a suspect in which the mark is found (docs/SECURITY.md).
+    pub fn details(&self) -> &Details {
+        &self.details.details
+    }
+
+    /// The same reading, whose JSON has the details whatever the verdict is: see [`details`](Self::details).
+    pub fn with_details(mut self) -> Extraction {
+        self.details.is_shown = true;
+        self
+    }
+}
+
+/// Details, and whether JSON has them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Kept {
+    pub details: Details,
+    pub is_shown: bool,
+}
+
+impl Serialize for Kept {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.is_shown.then_some(&self.details).serialize(serializer)
+    }
 }
 
 /// What an embedding did.

@@ -62,13 +62,13 @@ fn hold(name: &str, mesh: &Mesh) {
             let is_read =
                 answer.verdict == Verdict::Found && answer.number == Some(payload().number());
             let seen = if is_read {
-                format!("ln p {:.0}", answer.ln_p)
+                format!("ln p {:.0}", answer.details().ln_p)
             } else {
                 "not read".to_owned()
             };
             match floor.flatten() {
                 None => Some(format!("{name} | {attack} has no line; {seen}")),
-                Some(floor) if !is_read || answer.ln_p > floor => {
+                Some(floor) if !is_read || answer.details().ln_p > floor => {
                     Some(format!("{name} | {attack}: {seen}, the floor is {floor}"))
                 }
                 _ => None,

@@ -28,6 +28,7 @@ mod note;
 mod osveta;
 mod payload;
 mod quality;
+mod reports;
 mod ring;
 mod robustness;
 mod scene;

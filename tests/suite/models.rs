@@ -83,7 +83,7 @@ fn models_bunny_is_found_in_half_of_itself() {
             (half.verdict, half.tag.as_deref()),
             (Verdict::Found, Some("ADA-1"))
         );
-        assert!(half.ln_p < -1000.0, "{}", half.ln_p);
+        assert!(half.details().ln_p < -1000.0, "{}", half.details().ln_p);
     }
 }
 
@@ -144,7 +144,7 @@ fn models_knight_is_marked_and_found() {
     )
     .unwrap();
     assert!(
-        marked.report.read_back.ln_p < -30.0,
+        marked.report.read_back.details().ln_p < -30.0,
         "{:?}",
         marked.report.read_back
     );
@@ -167,7 +167,7 @@ fn models_regular_shapes_are_marked_and_found() {
     )
     .unwrap();
     assert!(
-        marked.report.read_back.ln_p < -30.0,
+        marked.report.read_back.details().ln_p < -30.0,
         "{:?}",
         marked.report.read_back
     );

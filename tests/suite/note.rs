@@ -51,7 +51,12 @@ fn note_stands_a_mark_on_top_and_leaves_it_alone() {
         assert_eq!(mark.verdict, Verdict::Found);
         mark
     });
-    for (alone, both) in alone.carriers.iter().zip(&both.carriers) {
+    for (alone, both) in alone
+        .details()
+        .carriers
+        .iter()
+        .zip(&both.details().carriers)
+    {
         assert!(both.ln_p < 0.7 * alone.ln_p, "{alone:?} {both:?}");
     }
 }

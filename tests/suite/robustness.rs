@@ -46,7 +46,11 @@ fn robustness_of_regular_shapes() {
     ] {
         let answer = extract(&Evidence::measure(&suspect), &key(1));
         assert_eq!(answer.verdict, Verdict::Found, "{attack}: {answer:?}");
-        assert!(answer.ln_p < -100.0, "{attack}: ln p {:.0}", answer.ln_p);
+        assert!(
+            answer.details().ln_p < -100.0,
+            "{attack}: ln p {:.0}",
+            answer.details().ln_p
+        );
     }
 }
 

@@ -36,9 +36,14 @@ fn watermark_is_found_by_its_key_and_no_other() {
         (Verdict::Found, Some("ADA-1"))
     );
     assert_eq!(found.number, Some(payload().number()));
-    assert!(found.ln_p < -500.0 && found.agreement > 0.6, "{found:?}");
+    let details = found.details();
+    assert!(
+        details.ln_p < -500.0 && details.agreement > 0.6,
+        "{found:?}"
+    );
     assert_eq!(
-        found, marked.report.read_back,
+        details,
+        marked.report.read_back.details(),
         "the report is what a detector says"
     );
     let other = read(&marked.model, 2);
@@ -140,7 +145,7 @@ fn verify_finds_the_expected_payload_and_names_another() {
         (Verdict::Found, Some(payload().number()))
     );
     assert!(
-        found.ln_p < extract(&evidence, &key(1)).ln_p,
+        found.details().ln_p < extract(&evidence, &key(1)).details().ln_p,
         "a payload that is known need not be guessed"
     );
     let other = verify(&evidence, &key(1), Payload::from_tag("ADA-2").unwrap());
@@ -303,7 +308,7 @@ fn wrong_keys_find_nothing() {
                 matches!(answer.verdict, Verdict::None | Verdict::CannotCheck),
                 "{answer:?}"
             );
-            answer.ln_p
+            answer.details().ln_p
         })
         .collect();
     for threshold in [1.0, 2.0, 3.0] {

@@ -108,7 +108,7 @@ impl Trial<'_> {
             rms_rel: Distortion::between(&host.positions, &copy.positions).rms_rel,
             note: read_note(&suspect, &self.key, &self.text)?,
             is_found: read.number == Some(self.payload.number()),
-            ln_p: read.ln_p,
+            ln_p: read.details().ln_p,
             ln_p_solid: by(&read, Carrier::Solid),
             ln_p_ring: by(&read, Carrier::Ring),
         })
@@ -116,6 +116,10 @@ impl Trial<'_> {
 }
 
 fn by(read: &Extraction, name: Carrier) -> f64 {
-    let reading = read.carriers.iter().find(|reading| reading.name == name);
+    let reading = read
+        .details()
+        .carriers
+        .iter()
+        .find(|reading| reading.name == name);
     reading.map_or(0.0, |reading| reading.ln_p)
 }

@@ -155,7 +155,7 @@ fn marks(mesh: &Mesh, model: &Model, seed: &Seed) -> Vec<Smoothed> {
                 Ok(Read {
                     is_right: read.verdict == Verdict::Found
                         && read.number == Some(payload.number()),
-                    ln_p: read.ln_p,
+                    ln_p: read.details().ln_p,
                 })
             })
         };

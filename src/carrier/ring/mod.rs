@@ -31,7 +31,7 @@ const STEP: f64 = 0.04;
 
 /// One address in so many is a key's own. With all of them, whoever marks a marked model with a key of their own erases
 /// the first mark: ln p of the bunny's goes from -8751 to -4; with a quarter, from -2926 to -1469.
-const SHARE: u64 = 4;
+pub const SHARE: u64 = 4;
 
 /// What a key makes of an address that it owns.
 struct Owned {

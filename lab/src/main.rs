@@ -11,6 +11,7 @@ mod found;
 mod grid;
 mod journal;
 mod models;
+mod oracle;
 mod plot;
 mod published;
 mod real;
@@ -47,7 +48,7 @@ struct Arguments {
     #[arg(long, requires = "real")]
     blender: bool,
     /// Goes on with a run that was interrupted.
-    #[arg(long, conflicts_with_all = ["seed", "false_positives", "study"])]
+    #[arg(long, conflicts_with_all = ["seed", "false_positives", "study", "oracle"])]
     resume: bool,
     /// A folder of .glb and .obj files. Default: ../shared/models, where it exists.
     #[arg(long)]
@@ -61,6 +62,9 @@ struct Arguments {
     /// Instead of the grid: the seed paper's study; writes docs/STUDY.md, and its plots in docs/study.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives"])]
     study: bool,
+    /// Instead of the grid: forgers who may ask a detector with so many keys, and what they need; prints a table.
+    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study"])]
+    oracle: Option<u64>,
     /// Another file to write; plots are in a folder beside it.
     #[arg(long)]
     output: Option<PathBuf>,
@@ -85,8 +89,8 @@ const PLOTS: &str = "robustness";
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match run(&arguments) {
-        Ok(path) => {
-            println!("wrote {}", path.display());
+        Ok(said) => {
+            println!("{said}");
             ExitCode::SUCCESS
         }
         Err(error) => {
@@ -96,11 +100,15 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<PathBuf, String> {
+/// Does what was asked for; returns what there is to say.
+fn run(arguments: &Arguments) -> Result<String, String> {
     let seed = match arguments.seed {
         Some(number) => number,
         None => getrandom::u64().map_err(|error| error.to_string())?,
     };
+    if let Some(num_keys) = arguments.oracle {
+        return Ok(oracle::table(&Seed::new(seed), num_keys));
+    }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",
         Some(_) => "FALSE_POSITIVES.md",
@@ -123,7 +131,7 @@ fn run(arguments: &Arguments) -> Result<PathBuf, String> {
     } else {
         robustness(arguments, seed, &root.join("target"), &path)?;
     }
-    Ok(path)
+    Ok(format!("wrote {}", path.display()))
 }
 
 /// Runs the grid, or the rest of it.

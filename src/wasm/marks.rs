@@ -3,7 +3,7 @@
 use super::listener::Listener;
 use super::{argument, encoded, files_from, set, thrown};
 use crate::watermark::{self, Error, Strength};
-use crate::{Carrier, EmbedOptions, Evidence, Key, Payload};
+use crate::{Carrier, EmbedOptions, Evidence, Extraction, Key, Payload};
 use js_sys::{Array, Function, JsString, Object, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 use web_sys::AbortSignal;
@@ -84,6 +84,7 @@ pub fn detect(
     files: JsValue,
     key: &[u8],
     expected: JsValue,
+    options: JsValue,
     on_progress: Option<Function>,
     signal: Option<AbortSignal>,
 ) -> Result<JsValue, JsValue> {
@@ -96,26 +97,32 @@ pub fn detect(
         signal,
     };
     let (files, key) = (files_from(&files)?, key_from(key)?);
-    encoded(&watermark::detect(model, &files, &key, expected, &mut listener).map_err(thrown)?)
+    let extraction =
+        watermark::detect(model, &files, &key, expected, &mut listener).map_err(thrown)?;
+    told(extraction, &options)
 }
 
 /// Reads a payload.
 #[wasm_bindgen(skip_typescript)]
-pub fn extract(evidence: &[u8], key: &[u8]) -> Result<JsValue, JsValue> {
-    encoded(&watermark::extract(
-        &evidence_from(evidence)?,
-        &key_from(key)?,
-    ))
+pub fn extract(evidence: &[u8], key: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
+    let extraction = watermark::extract(&evidence_from(evidence)?, &key_from(key)?);
+    told(extraction, &options)
 }
 
 /// Tests an expected payload.
 #[wasm_bindgen(skip_typescript)]
-pub fn verify(evidence: &[u8], key: &[u8], expected: JsValue) -> Result<JsValue, JsValue> {
-    encoded(&watermark::verify(
+pub fn verify(
+    evidence: &[u8],
+    key: &[u8],
+    expected: JsValue,
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let extraction = watermark::verify(
         &evidence_from(evidence)?,
         &key_from(key)?,
         payload_from(&expected)?,
-    ))
+    );
+    told(extraction, &options)
 }
 
 /// Describes a model.
@@ -134,6 +141,15 @@ pub fn demo_model() -> Vec<u8> {
 #[wasm_bindgen(skip_typescript)]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").to_owned()
+}
+
+/// A reading, with its details where `options` ask for them.
+fn told(extraction: Extraction, options: &JsValue) -> Result<JsValue, JsValue> {
+    let is_for_owner = field(options, "details") == JsValue::TRUE;
+    encoded(&match is_for_owner {
+        true => extraction.with_details(),
+        false => extraction,
+    })
 }
 
 fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {

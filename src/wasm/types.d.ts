@@ -39,7 +39,7 @@ export interface CarrierReading {
   name: Carrier;
   /** Natural logarithm of the upper bound of the false-positive probability, every choice charged; at most 0. */
   lnP: number;
-  /** The payload as a tag and as a number; `null` where none was read whose check bits hold. */
+  /** The payload as a tag and as a number; `null` where this carrier alone does not find one. */
   tag: string | null;
   number: number | null;
   /** Agreement of the symbols with that payload, weighted: 1 is perfect, 0 is chance. */
@@ -49,22 +49,43 @@ export interface CarrierReading {
   ownedAddresses: number;
 }
 
-/** A blind reading. */
-export interface Extraction {
-  verdict: Verdict;
-  /** The verdict in one sentence for a person. */
-  sentence: string;
-  /** Why it is not `found`; `null` where it is. */
-  reason: string | null;
-  tag: string | null;
-  number: number | null;
-  /** Over all carriers, the choice between them charged. */
+/** What was read: a model, measured here; or evidence, which says what whoever wrote it likes. */
+export type Input = "model" | "evidence";
+
+export interface ReadOptions {
+  /**
+   * Whether `Details` are told where nothing is found too. Default: no. They follow the key: whoever sees some hundreds of them, of
+   * suspects of their own making, can make one that is found. For the key's owner.
+   */
+  details?: boolean;
+}
+
+/** What follows the key in a reading. */
+export interface Details {
+  /** Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0. */
   lnP: number;
+  /** Agreement of the carrier that speaks loudest. */
   agreement: number;
   carriers: CarrierReading[];
 }
 
-/** A test of one expected payload; `tag` and `number` are the expected ones where it is named. */
+/** A blind reading; `Details` are there where the verdict is `found`, and where they were asked for. */
+export interface Extraction extends Partial<Details> {
+  verdict: Verdict;
+  input: Input;
+  /** The verdict in one sentence for a person. */
+  sentence: string;
+  /** Why it is not `found`; `null` where it is. */
+  reason: string | null;
+  /** The payload, where it is found. */
+  tag: string | null;
+  number: number | null;
+}
+
+/** A reading with its details. */
+export type DetailedExtraction = Extraction & Details;
+
+/** A test of one expected payload; `tag` and `number` are the expected ones where it is found. */
 export type Verification = Extraction;
 
 /** What is likely to leave the mark readable: tried on the marked model itself. */
@@ -92,7 +113,7 @@ export interface EmbedReport {
   maxRel: number;
   strength: number;
   /** The output as `extract` reads it. */
-  readBack: Extraction;
+  readBack: DetailedExtraction;
   forecast: Forecast[];
   /** SHA-256 in hexadecimal of the main file before and after. */
   hostSha256: string;
@@ -154,10 +175,13 @@ export function embed(
 export function measure(model: Uint8Array, files: Files | undefined, onProgress?: OnProgress, signal?: AbortSignal): Uint8Array;
 
 /** Reads a payload from evidence, knowing only the key. */
-export function extract(evidence: Uint8Array, key: Uint8Array): Extraction;
+export function extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions): Extraction;
 
-/** Tests evidence for one expected payload: stronger than `extract`, for it has no payload to guess. */
-export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload): Verification;
+/**
+ * Tests evidence for one expected payload: stronger than `extract`, for it has no payload to guess. The payload must not come from
+ * the suspect; payloads that are tried in turn add up, as keys do.
+ */
+export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, options?: ReadOptions): Verification;
 
 /**
  * Reads a suspect in one go, ending as soon as it is sure: faster than measure and extract. Stage "test"
@@ -168,6 +192,7 @@ export function detect(
   files: Files | undefined,
   key: Uint8Array,
   expected?: Payload,
+  options?: ReadOptions,
   onProgress?: OnProgress,
   signal?: AbortSignal,
 ): Extraction;

@@ -1,7 +1,7 @@
 //! Measuring a suspect, and reading evidence with a key.
 
 use super::error::Error;
-use super::report::{CarrierReading, Details, Extraction, Input, Kept, Verdict};
+use super::report::{CarrierReading, Details, Extraction, Input, Verdict};
 use crate::bits::Payload;
 use crate::carrier::{self, Carrier, Hypothesis, ring, solid};
 use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
@@ -318,11 +318,9 @@ fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction
     let other = others.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let ln_p_other = other.map_or(0.0, |other| union(other.ln_p, LN_CARRIERS));
     let CarrierReading {
-        tag,
-        number,
-        agreement,
-        ..
-    } = loudest.report.clone();
+        number, agreement, ..
+    } = loudest.report;
+    let tag = loudest.report.tag.clone();
     let (verdict, reason) = if best(|reading| reading.ln_p_payload) <= LN_P_FOUND {
         (Verdict::Found, None)
     } else if let Some(Other { payload, .. }) = other.filter(|_| ln_p_other <= LN_P_TRACE) {
@@ -358,13 +356,11 @@ fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction
         reason,
         tag,
         number,
-        details: Kept {
-            details: Details {
-                ln_p,
-                agreement,
-                carriers: readings.map(|reading| reading.report).to_vec(),
-            },
-            is_shown: verdict == Verdict::Found,
+        details: Details {
+            ln_p,
+            agreement,
+            carriers: readings.map(|reading| reading.report).into(),
         },
+        shows_details: verdict == Verdict::Found,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Forecast;
 use crate::carrier::Carrier;
+use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 /// The answer to "does this model carry this key's mark?".
@@ -67,8 +68,7 @@ pub enum Input {
 /// What may be said of it to anybody are the fields that can be seen. What else there is follows the key, and is
 /// [`details`](Self::details): as JSON it is there where the verdict is found, else only after [`with_details`](Self::with_details).
 /// `Debug` prints it always.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Extraction {
     /// The answer.
     pub verdict: Verdict,
@@ -82,13 +82,12 @@ pub struct Extraction {
     pub tag: Option<String>,
     /// The payload as a number, where it is found.
     pub number: Option<u64>,
-    #[serde(flatten)]
-    pub(super) details: Kept,
+    pub(super) details: Details,
+    pub(super) shows_details: bool,
 }
 
 /// What follows the key in a reading.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Details {
     /// Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0.
     pub ln_p: f64,
@@ -104,26 +103,33 @@ impl Extraction {
     /// The agreement of a suspect with one address says whether the key owns it, and at two features what its dither is. Some
     /// hundreds of such answers are enough to make a suspect in which the mark is found (docs/SECURITY.md).
     pub fn details(&self) -> &Details {
-        &self.details.details
+        &self.details
     }
 
     /// The same reading, whose JSON has the details whatever the verdict is: see [`details`](Self::details).
     pub fn with_details(mut self) -> Extraction {
-        self.details.is_shown = true;
+        self.shows_details = true;
         self
     }
 }
 
-/// Details, and whether JSON has them.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Kept {
-    pub details: Details,
-    pub is_shown: bool,
-}
-
-impl Serialize for Kept {
+/// By hand, for what serde derives for fields that are sometimes there takes 1 KB of the wasm module, by gzip.
+impl Serialize for Extraction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.is_shown.then_some(&self.details).serialize(serializer)
+        let num_details = if self.shows_details { 3 } else { 0 };
+        let mut fields = serializer.serialize_struct("Extraction", 6 + num_details)?;
+        fields.serialize_field("verdict", &self.verdict)?;
+        fields.serialize_field("input", &self.input)?;
+        fields.serialize_field("sentence", &self.sentence)?;
+        fields.serialize_field("reason", &self.reason)?;
+        fields.serialize_field("tag", &self.tag)?;
+        fields.serialize_field("number", &self.number)?;
+        if self.shows_details {
+            fields.serialize_field("lnP", &self.details.ln_p)?;
+            fields.serialize_field("agreement", &self.details.agreement)?;
+            fields.serialize_field("carriers", &self.details.carriers)?;
+        }
+        fields.end()
     }
 }
 

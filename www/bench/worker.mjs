@@ -15,7 +15,7 @@ const commands = {
     return { sha256: report.markedSha256 };
   },
   extract({ model, key }, clock) {
-    return { tag: meshmark.detect(model, undefined, key, undefined, clock.start).tag };
+    return { tag: meshmark.detect(model, undefined, key, undefined, undefined, clock.start).tag };
   },
   async rank({ mesh, rankings }, clock) {
     await loadStudy();

@@ -49,7 +49,7 @@ test("it marks to the same bytes as in Node, heard all the way, its inputs left 
     const { model, report } = await client.embed(host, undefined, "CLIENT", key, {}, { onProgress: (stage) => stages.add(stage) });
     const reading = await client.extract(await client.measure(model), key);
     const tried = [];
-    const detected = await client.detect(model, undefined, key, "CLIENT", { onProgress: (stage, fraction) => stage === "test" && tried.push(fraction) });
+    const detected = await client.detect(model, undefined, key, "CLIENT", undefined, { onProgress: (stage, fraction) => stage === "test" && tried.push(fraction) });
     return { host: host.length, key: key.length, sha256: await sha256(model), report, reading, detected, tried, stages: [...stages] };
   });
   const host = meshmark.demoModel();

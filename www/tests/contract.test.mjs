@@ -36,6 +36,9 @@ test("real results have exactly the declared shapes", () => {
   assert.deepEqual(contract.differences("Extraction", facade.extract(evidence, wrongKey)), []);
   assert.deepEqual(contract.differences("Extraction", facade.detect(embedding.model, undefined, key)), []);
   assert.deepEqual(contract.differences("Extraction", facade.detect(model, undefined, key, TAG)), []);
+  assert.deepEqual(contract.differences("DetailedExtraction", facade.detect(model, undefined, key, TAG, { details: true })), []);
+  assert.deepEqual(contract.differences("DetailedExtraction", facade.extract(evidence, wrongKey, { details: true })), []);
+  assert.deepEqual(contract.differences("DetailedExtraction", facade.verify(evidence, wrongKey, TAG, { details: true })), []);
   assert.deepEqual(contract.differences("Verification", facade.verify(evidence, key, TAG)), []);
   assert.deepEqual(contract.differences("Verification", facade.verify(evidence, key, 12345)), []);
   assert.deepEqual(contract.differences("Inspection", facade.inspect(model)), []);
@@ -54,7 +57,7 @@ test("progress names declared stages, with fractions from 0 to 1", () => {
   const key = new Uint8Array(32).fill(1);
   const { model } = facade.embed(facade.demoModel(), undefined, TAG, key, undefined, (...report) => heard.push(report));
   facade.measure(model, undefined, (...report) => heard.push(report));
-  facade.detect(model, undefined, key, undefined, (...report) => heard.push(report));
+  facade.detect(model, undefined, key, undefined, undefined, (...report) => heard.push(report));
   assert.ok(heard.length > 0);
   for (const [stage, fraction] of heard) {
     assert.deepEqual(contract.differences("Stage", stage), []);

@@ -117,8 +117,13 @@ test("detect reads at one go what measure, extract and verify read", async () =>
   assert.deepEqual(answer(meshmark.detect(model, undefined, key, "GO")), answer(meshmark.verify(evidence, key, "GO")));
   assert.deepEqual(answer(meshmark.detect(model, undefined, key, "OTHER")), answer(meshmark.verify(evidence, key, "OTHER")));
   assert.deepEqual(answer(meshmark.detect(model, undefined, stranger)), answer(meshmark.extract(evidence, stranger)));
+  for (const read of [(options) => meshmark.extract(evidence, stranger, options), (options) => meshmark.detect(model, undefined, stranger, undefined, options)]) {
+    assert.equal("lnP" in read(), false, "what follows the key is told");
+    assert.equal(typeof read({ details: true }).lnP, "number");
+  }
+  assert.deepEqual([meshmark.extract(evidence, key).input, meshmark.detect(model, undefined, key).input], ["evidence", "model"]);
   const fractions = [];
-  meshmark.detect(model, undefined, stranger, undefined, (stage, fraction) => stage === "test" && fractions.push(fraction));
+  meshmark.detect(model, undefined, stranger, undefined, undefined, (stage, fraction) => stage === "test" && fractions.push(fraction));
   assert.ok(fractions.length > 1, "no hypothesis is heard of");
   assert.deepEqual(fractions, fractions.toSorted((a, b) => a - b));
 });
@@ -142,7 +147,7 @@ test("a key of another length is refused", async () => {
 test("an aborted signal stops the work with code aborted", async () => {
   await meshmark.init();
   const measure = () => meshmark.measure(meshmark.demoModel(), undefined, undefined, AbortSignal.abort());
-  const detect = () => meshmark.detect(meshmark.demoModel(), undefined, new Uint8Array(32), undefined, undefined, AbortSignal.abort());
+  const detect = () => meshmark.detect(meshmark.demoModel(), undefined, new Uint8Array(32), undefined, undefined, undefined, AbortSignal.abort());
   for (const work of [measure, detect]) {
     assert.throws(work, (error) => error instanceof MeshmarkError && error.code === "aborted");
   }

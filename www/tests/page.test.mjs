@@ -197,6 +197,12 @@ for (const [name, source] of [
     await check("another passphrase");
     assert.equal(await headline(), "No evidence of this key");
     await result().getByText("This does not prove that the model is not yours.").waitFor();
+    assert.equal(await result().getByText("Agreement").isVisible(), false, "what follows the key is shown unasked");
+    await result().getByText("Details for the owner").click();
+    await result().getByText("Keep these figures to yourself.").waitFor();
+    assert.ok(await result().getByText("Agreement").isVisible());
+    const passedOn = JSON.parse(readFileSync(await saved("Save report (JSON)"), "utf8")).result;
+    assert.deepEqual(Object.keys(passedOn).sort(), ["input", "number", "reason", "sentence", "tag", "verdict"]);
     await picture(`none-${name}`);
 
     await page.getByLabel(/Tag to look for/).fill(TAG);

@@ -1,10 +1,11 @@
 /** Check: a suspect and a key in, one sentence out. */
-import type { Extraction } from "meshmark";
+import type { DetailedExtraction } from "meshmark";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keyMaker, type KeyMaker } from "./key-form";
 import { renamed, type Model } from "./model";
 import { actions, card, carrierTable, details, numbers, present, readingRows } from "./outcome";
+import { detect } from "./reading";
 import { checkReport } from "./report";
 import { saveJson } from "./save";
 import { Stage } from "./stage";
@@ -12,6 +13,8 @@ import { tagProblem, watchTag } from "./tag";
 import { runTask, type Progress } from "./task";
 import { View } from "./view";
 import { homes, VERDICTS } from "./words";
+
+const DO_NOT_PASS_ON = "Keep these figures to yourself. They follow your key: whoever gets enough of them, for models of their own making, can make one in which your mark is found.";
 
 export class Check extends View<Stage> {
   readonly #expected = find<HTMLInputElement>("#expected");
@@ -38,30 +41,33 @@ export class Check extends View<Stage> {
     });
   }
 
-  #card(model: Model, expected: string | null, reading: Extraction): HTMLElement {
+  #card(model: Model, expected: string | null, reading: DetailedExtraction): HTMLElement {
+    const [figures, carriers] = [numbers(readingRows(reading)), carrierTable(reading.carriers)];
+    const file = numbers([["SHA-256", h("code", { class: "hash" }, this.inspection?.sha256 ?? "unknown")]]);
     return card(
       reading.verdict,
       VERDICTS[reading.verdict],
       sentences(reading),
-      numbers(readingRows(reading)),
-      details("Carriers and file", carrierTable(reading.carriers), numbers([["SHA-256", h("code", { class: "hash" }, this.inspection?.sha256 ?? "unknown")]])),
+      ...(reading.verdict === "found"
+        ? [figures, details("Carriers and file", carriers, file)]
+        : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures, carriers), details("File", file)]),
       actions(button("Save report (JSON)", async () => saveJson(renamed(model.name, "report.json"), await checkReport(model, this.inspection?.sha256 ?? null, expected, reading)))),
     );
   }
 }
 
-async function read(model: Model, expected: string | null, makeKey: KeyMaker, progress: Progress): Promise<Extraction> {
+async function read(model: Model, expected: string | null, makeKey: KeyMaker, progress: Progress): Promise<DetailedExtraction> {
   const client = await engine;
   const key = await makeKey(client, progress);
   progress.stage("read");
   try {
-    return await client.detect(model.bytes, model.buffers, key, expected ?? undefined, progress);
+    return await detect(client, model, key, expected, progress);
   } finally {
     key.fill(0);
   }
 }
 
-function sentences(reading: Extraction): string[] {
+function sentences(reading: DetailedExtraction): string[] {
   const { verdict, reason, tag } = reading;
   const why = reason === null ? [] : [reason];
   const where = homes(reading);

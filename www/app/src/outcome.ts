@@ -1,5 +1,5 @@
 /** Results in words first, then numbers, then details. */
-import type { CarrierReading, EmbedReport, Extraction, Forecast, Verdict } from "meshmark";
+import type { CarrierReading, DetailedExtraction, EmbedReport, Forecast, Verdict } from "meshmark";
 import { announce, h } from "./dom";
 import { attackWords, CARRIERS, count, LEVELS, odds, percent, problem, significant } from "./words";
 
@@ -46,7 +46,7 @@ export function oddsOf(lnP: number): HTMLElement {
 }
 
 /** What a blind reading says, as rows of `numbers`. */
-export function readingRows(reading: Extraction): [string, Node | string][] {
+export function readingRows(reading: DetailedExtraction): [string, Node | string][] {
   return [
     ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
     ["Chance of this without the key", chance(reading.lnP)],

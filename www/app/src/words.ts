@@ -1,5 +1,5 @@
 /** Numbers and outcomes in words. */
-import type { Carrier, Extraction, Forecast, Stage, Verdict } from "meshmark";
+import type { Carrier, DetailedExtraction, Forecast, Stage, Verdict } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
 
 export const VERDICTS: Record<Verdict, string> = {
@@ -39,7 +39,7 @@ export function losses(forecast: Forecast[]): string | null {
 }
 
 /** Where a payload was read: "the shape", "the connectivity", or both; `null` where none was. */
-export function homes({ number, carriers }: Extraction): string | null {
+export function homes({ number, carriers }: DetailedExtraction): string | null {
   const spoke = carriers.filter((carrier) => number !== null && carrier.number === number).map(({ name }) => `the ${CARRIERS[name].home}`);
   return spoke.length === 0 ? null : new Intl.ListFormat("en").format(spoke);
 }

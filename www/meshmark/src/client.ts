@@ -4,7 +4,7 @@
  * Calls run one after another. Inputs are copied to the worker, so that the caller keeps them; results are moved back.
  */
 import { MeshmarkError } from "./error.js";
-import type { EmbedOptions, Embedding, Extraction, Files, Inspection, OnProgress, Payload, Verification } from "./index.js";
+import type { EmbedOptions, Embedding, Extraction, Files, Inspection, OnProgress, Payload, ReadOptions, Verification } from "./index.js";
 import type { Calls, Method, Reply, Request } from "./protocol.js";
 
 export { MeshmarkError };
@@ -35,13 +35,14 @@ export interface Client {
     call?: CallOptions,
   ): Promise<Embedding>;
   measure(model: Uint8Array, files?: Files, call?: CallOptions): Promise<Uint8Array>;
-  extract(evidence: Uint8Array, key: Uint8Array, call?: CallOptions): Promise<Extraction>;
-  verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, call?: CallOptions): Promise<Verification>;
+  extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions, call?: CallOptions): Promise<Extraction>;
+  verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, options?: ReadOptions, call?: CallOptions): Promise<Verification>;
   detect(
     model: Uint8Array,
     files: Files | undefined,
     key: Uint8Array,
     expected?: Payload,
+    options?: ReadOptions,
     call?: CallOptions,
   ): Promise<Extraction>;
   inspect(model: Uint8Array, files?: Files, call?: CallOptions): Promise<Inspection>;
@@ -90,9 +91,10 @@ class WorkerClient implements Client {
   embed: Client["embed"] = (model, files, payload, key, options, call) =>
     this.#call("embed", [model, files, payload, key, options], call);
   measure: Client["measure"] = (model, files, call) => this.#call("measure", [model, files], call);
-  extract: Client["extract"] = (evidence, key, call) => this.#call("extract", [evidence, key], call);
-  verify: Client["verify"] = (evidence, key, expected, call) => this.#call("verify", [evidence, key, expected], call);
-  detect: Client["detect"] = (model, files, key, expected, call) => this.#call("detect", [model, files, key, expected], call);
+  extract: Client["extract"] = (evidence, key, options, call) => this.#call("extract", [evidence, key, options], call);
+  verify: Client["verify"] = (evidence, key, expected, options, call) => this.#call("verify", [evidence, key, expected, options], call);
+  detect: Client["detect"] = (model, files, key, expected, options, call) =>
+    this.#call("detect", [model, files, key, expected, options], call);
   inspect: Client["inspect"] = (model, files, call) => this.#call("inspect", [model, files], call);
   demoModel: Client["demoModel"] = (call) => this.#call("demoModel", [], call);
   version: Client["version"] = (call) => this.#call("version", [], call);

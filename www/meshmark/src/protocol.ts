@@ -7,6 +7,7 @@ import type {
   Inspection,
   MeshmarkErrorObject,
   Payload,
+  ReadOptions,
   Stage,
   Verification,
 } from "./index.js";
@@ -19,10 +20,19 @@ export interface Calls {
     result: Embedding;
   };
   measure: { args: [model: Uint8Array, files: Files | undefined]; result: Uint8Array };
-  extract: { args: [evidence: Uint8Array, key: Uint8Array]; result: Extraction };
-  verify: { args: [evidence: Uint8Array, key: Uint8Array, expected: Payload]; result: Verification };
+  extract: { args: [evidence: Uint8Array, key: Uint8Array, options: ReadOptions | undefined]; result: Extraction };
+  verify: {
+    args: [evidence: Uint8Array, key: Uint8Array, expected: Payload, options: ReadOptions | undefined];
+    result: Verification;
+  };
   detect: {
-    args: [model: Uint8Array, files: Files | undefined, key: Uint8Array, expected: Payload | undefined];
+    args: [
+      model: Uint8Array,
+      files: Files | undefined,
+      key: Uint8Array,
+      expected: Payload | undefined,
+      options: ReadOptions | undefined,
+    ];
     result: Extraction;
   };
   inspect: { args: [model: Uint8Array, files: Files | undefined]; result: Inspection };

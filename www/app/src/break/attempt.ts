@@ -1,5 +1,5 @@
 /** One thing done to a marked model, from before it is begun to what came of it. */
-import type { Extraction } from "meshmark";
+import type { DetailedExtraction } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
 import type { Quality } from "../../attacks-wasm/attacks.js";
 import type { Model } from "../model";
@@ -8,7 +8,7 @@ import type { Model } from "../model";
 export type Level = "green" | "amber" | "red";
 
 export interface Finding {
-  reading: Extraction;
+  reading: DetailedExtraction;
   level: Level;
   quality: Quality;
 }

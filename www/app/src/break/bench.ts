@@ -3,6 +3,7 @@ import type { Extraction } from "meshmark";
 import { createClient, type Client } from "meshmark/client";
 import type { Attack, Quality } from "../../attacks-wasm/attacks.js";
 import { renamed, type Model } from "../model";
+import { detect } from "../reading";
 import type { Progress } from "../task";
 import { STAGES } from "../words";
 import type { Finding, Level, Telling, Work } from "./attempt";
@@ -33,7 +34,7 @@ export class Bench {
   static async open(marked: Model, key: Uint8Array, progress: Progress): Promise<Bench> {
     const client = await createClient(); // of its own: the other views need not wait
     try {
-      const reading = await client.detect(marked.bytes, marked.buffers, key, undefined, progress);
+      const reading = await detect(client, marked, key, null, progress);
       const { vertices, triangles } = await client.inspect(marked.bytes, marked.buffers, progress);
       const quality = { rmsRel: 0, hausdorffRel: 0, msdm: 0, vertices, triangles };
       const { result: catalogue } = await attacker.ask("catalogue", [], { signal: progress.signal });
@@ -91,7 +92,7 @@ export class Bench {
     say("Measuring what was paid …", null);
     const quality = await qualityOf(this.marked, copy, signal);
     say(`${STAGES.test} …`, null);
-    const reading = await this.#client.detect(copy.bytes, copy.buffers, this.#key, undefined, { signal, onProgress: (stage, fraction) => say(`${STAGES[stage]} …`, fraction) });
+    const reading = await detect(this.#client, copy, this.#key, null, { signal, onProgress: (stage, fraction) => say(`${STAGES[stage]} …`, fraction) });
     return { reading, quality, level: levelOf(reading, this.first.reading.number) };
   }
 }

@@ -1,0 +1,264 @@
+//! What a detector gives away to whoever may ask it: forgers without the key send it suspects of their own making, hear reports alone,
+//! and go on until a suspect is found.
+//!
+//! Suspects are lists of rings, one for each address: what RING measures of a fan of triangles whose tip is raised. SOLID sees nothing of them.
+
+use crate::seed::Seed;
+use meshmark::carrier::{ring, solid};
+use meshmark::code::{Checked, Codeword, SoftSymbol, Symbol};
+use meshmark::detection::Statistic;
+use meshmark::key::Prf;
+use meshmark::{Evidence, Extraction, Key, Payload, Verdict, extract, verify};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+/// Step of RING's quantizer (docs/FORMAT.md).
+const STEP: f64 = 0.04;
+
+/// A feature above RING's cuts, 0.12 and 0.04: of the ways by connectivity, it is read in one alone.
+const ABOVE: f64 = 0.16;
+
+/// Rings of a suspect with random features. With twice as many, a question takes twice as long and one in 1.5 fewer of them is needed.
+const RINGS: u64 = 600;
+
+/// Features that are tried at an address: eighths of a step come within 0.92 of full agreement.
+const PHASES: u64 = 8;
+
+/// Addresses that the forger with details asks about.
+const ADDRESSES: u64 = 400;
+
+/// So many pilots that agree carry a payload of any kind over 1e-9 with the guess of it.
+const PILOTS: usize = 90;
+
+/// A forger gives up after so many questions.
+const PATIENCE: u64 = 20_000_000;
+
+/// A ring: the number that its addresses come from, and its feature.
+#[derive(Clone, Copy)]
+struct Ring {
+    number: u64,
+    feature: f64,
+}
+
+/// A suspect. With `lone`, its rings share their addresses by geometry and position.
+fn suspect(rings: &[Ring], lone: Option<u64>) -> Evidence {
+    let bytes = |ring: &Ring| {
+        // Odd multipliers: different numbers have different addresses.
+        let address = |number: u64, factor: u64| number.wrapping_mul(factor).to_le_bytes();
+        let elsewhere = lone.unwrap_or(ring.number);
+        let digit = |power: u32| (elsewhere / 1000u64.pow(power) % 1000) as i16 - 500;
+        let mut bytes = address(ring.number, 0x9E37_79B9_7F4A_7C15).to_vec();
+        bytes.extend(address(elsewhere, 0xBF58_476D_1CE4_E5B9));
+        bytes.extend([0, 1, 2].map(digit).map(i16::to_le_bytes).concat());
+        bytes.extend((ring.feature as f32).to_le_bytes());
+        bytes
+    };
+    let bytes: Vec<u8> = rings.iter().flat_map(bytes).collect();
+    Evidence {
+        ring: ring::Measurement::from_bytes(&bytes).expect("rings as they are stored"),
+        solid: solid::Measurement::from_bytes(&[]).expect("no surface is evidence too"),
+    }
+}
+
+/// A detector that answers anybody, and counts what it was asked.
+struct Detector {
+    key: Key,
+    expected: Payload,
+    codeword: Codeword,
+    questions: u64,
+}
+
+impl Detector {
+    fn new(key: Key, expected: Payload) -> Detector {
+        Detector {
+            codeword: Codeword::new(Checked::new(&key).message(expected)),
+            key,
+            expected,
+            questions: 0,
+        }
+    }
+
+    fn verify(&mut self, rings: &[Ring], lone: Option<u64>) -> Extraction {
+        self.questions += 1;
+        verify(&suspect(rings, lone), &self.key, self.expected)
+    }
+
+    fn fits(&mut self, rings: &[Ring]) -> bool {
+        matches!(
+            self.verify(rings, None).verdict,
+            Verdict::Partial | Verdict::Found
+        )
+    }
+
+    fn is_found(&mut self, rings: &[Ring]) -> bool {
+        self.verify(rings, None).verdict == Verdict::Found
+    }
+
+    fn is_found_blindly(&mut self, rings: &[Ring]) -> bool {
+        self.questions += 1;
+        extract(&suspect(rings, None), &self.key).verdict == Verdict::Found
+    }
+
+    /// The same answer as [`fits`](Self::fits), in a tenth of the time where it is no: of rings by chance, none is decoded, and neither
+    /// pilots nor the other symbols come near the 13.3 nats that are asked of a way.
+    fn fits_by_chance(&mut self, rings: &[Ring]) -> bool {
+        let near = 13.0;
+        let exponent = |symbols: &[SoftSymbol], are_pilots: bool| {
+            let of = symbols
+                .iter()
+                .filter(|soft| (soft.symbol == Symbol::Pilot) == are_pilots);
+            let sign =
+                |soft: &SoftSymbol| (soft.value * self.codeword.sign(soft.symbol), soft.weight);
+            -Statistic::new(of.map(sign)).ln_p()
+        };
+        let reading = suspect(rings, None).ring.read(&self.key);
+        let is_near = reading.hypotheses.iter().any(|hypothesis| {
+            [true, false]
+                .into_iter()
+                .any(|are_pilots| exponent(&hypothesis.symbols, are_pilots) > near)
+        });
+        if is_near {
+            return self.fits(rings);
+        }
+        self.questions += 1;
+        false
+    }
+}
+
+/// Random numbers of a forger.
+struct Chance {
+    prf: Prf,
+    drawn: u64,
+}
+
+impl Chance {
+    fn unit(&mut self) -> f64 {
+        self.drawn += 1;
+        (self.prf.at(self.drawn).0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Forges with the details of reports: whether an address is owned, and at two features how far it agrees.
+fn with_details(detector: &mut Detector) -> bool {
+    let mut ask =
+        |rings: &[Ring], lone| detector.verify(rings, Some(lone)).details().carriers[1].clone();
+    let ring = |number, feature| Ring { number, feature };
+    // An address by geometry and a place of which the key owns nothing.
+    let lone = (0..).find(|&number| ask(&[ring(number, 0.0)], number).owned_addresses == 0);
+    let lone = lone.expect("a key owns one address in four");
+    let mut forged = Vec::new();
+    for number in 1000..1000 + ADDRESSES {
+        let first = ask(&[ring(number, ABOVE)], lone);
+        if first.owned_addresses == 0 {
+            continue;
+        }
+        // Agreement is s cos(2 pi (d + f / STEP)), and a quarter of a step further -s sin of it.
+        let second = ask(&[ring(number, ABOVE + STEP / 4.0)], lone);
+        let turn = libm::atan2(-second.agreement, first.agreement) / TAU;
+        let feature = ABOVE + STEP * (-turn).rem_euclid(1.0);
+        forged.push(ring(number, feature));
+    }
+    detector.verify(&forged, Some(lone)).verdict == Verdict::Found
+}
+
+/// Forges with found, partial and none. Returns the questions until the first partial fit, if there was one.
+fn with_verdicts(detector: &mut Detector, chance: &mut Chance) -> Option<(u64, bool)> {
+    let mut core: Vec<Ring> = Vec::new();
+    while core.is_empty() || !detector.fits_by_chance(&core) {
+        if detector.questions >= PATIENCE {
+            return None;
+        }
+        let ring = |number| Ring {
+            number,
+            feature: (chance.unit() - 0.5) * STEP * 8.0,
+        };
+        core = (0..RINGS).map(ring).collect();
+    }
+    let until_partial = detector.questions;
+    // What can be left out is no help; of what is left, every ring is owned and agrees.
+    let mut is_smaller = true;
+    while is_smaller {
+        is_smaller = false;
+        for place in (0..core.len()).rev() {
+            let mut without = core.clone();
+            without.remove(place);
+            if detector.fits(&without) {
+                core = without;
+                is_smaller = true;
+            }
+        }
+    }
+    // A ring that makes up for one of these agrees as well as that one.
+    let mut gained = core.clone();
+    let mut fresh = RINGS;
+    while detector.questions < PATIENCE {
+        fresh += 1;
+        let mut probe = core.clone();
+        probe.remove(fresh as usize % core.len());
+        for phase in 0..PHASES {
+            let ring = Ring {
+                number: fresh,
+                feature: STEP * phase as f64 / PHASES as f64,
+            };
+            probe.push(ring);
+            if detector.fits(&probe) {
+                gained.push(ring);
+                if detector.is_found(&gained) {
+                    return Some((until_partial, true));
+                }
+                break;
+            }
+            probe.pop();
+        }
+        // Where it is pilots that fit, they say nothing of a payload: any whose check bits hold will do.
+        if gained.len() >= PILOTS {
+            let mut whole = gained.clone();
+            whole.extend((0..24).map(|place| Ring {
+                number: (fresh << 20) + place,
+                feature: (chance.unit() - 0.5) * STEP,
+            }));
+            if detector.is_found_blindly(&whole) {
+                return Some((until_partial, true));
+            }
+        }
+    }
+    Some((until_partial, false))
+}
+
+/// The table: for each key, the questions that forgers took.
+pub fn table(seed: &Seed, num_keys: u64) -> String {
+    let row = |index: u64| {
+        let expected = seed.payload(&format!("oracle, payload {index}"));
+        let detector = || Detector::new(seed.key("oracle", index), expected);
+        let mut open = detector();
+        let is_open_found = with_details(&mut open);
+        let mut closed = detector();
+        let mut chance = Chance {
+            prf: seed.key("oracle, chance", index).prf("features"),
+            drawn: 0,
+        };
+        let ended = with_verdicts(&mut closed, &mut chance);
+        let number = |is_found: bool, questions: u64| match is_found {
+            true => questions.to_string(),
+            false => format!("not within {questions}"),
+        };
+        let (partial, found) = match ended {
+            Some((partial, is_found)) => (partial.to_string(), number(is_found, closed.questions)),
+            None => (number(false, closed.questions), String::new()),
+        };
+        let details = number(is_open_found, open.questions);
+        format!("| {} | {details} | {partial} | {found} |\n", index + 1)
+    };
+    let rows: Vec<String> = (0..num_keys).into_par_iter().map(row).collect();
+    let mut text = String::from(
+        "| key | with details: questions until found | with verdicts: until partial | until found |\n|--:|--:|--:|--:|\n",
+    );
+    text.extend(rows);
+    let _ = writeln!(
+        text,
+        "\n`cargo xtask lab --oracle {num_keys} --seed {}`",
+        seed.number
+    );
+    text
+}

@@ -4,7 +4,7 @@ use super::error::Error;
 use super::report::{CarrierReading, Details, Extraction, Input, Verdict};
 use crate::bits::Payload;
 use crate::carrier::{self, Carrier, Hypothesis, ring, solid};
-use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
+use crate::code::{Checked, Codeword, SoftSymbol, Symbol, complete, decode};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
 use crate::document::{Document, Files};
 use crate::evidence::Evidence;
@@ -52,7 +52,7 @@ pub fn extract_many(evidence: &Evidence, keys: &[Key]) -> Vec<Extraction> {
 ///
 /// A small p alone would say that the key is there, not that the payload is this one: copies of the same owner with other
 /// payloads share the pilots and many parities. So the payload counts as found only where decoding gives it, or where
-/// decoding gives none and the symbols other than pilots speak for it.
+/// decoding gives none, the symbols other than pilots speak for it, and its own check bits fit best of all.
 ///
 /// The payload must not come from the suspect, nor from a report of it, and payloads that are tried in turn add up as keys do.
 pub fn verify(evidence: &Evidence, key: &Key, expected: Payload) -> Extraction {
@@ -152,19 +152,35 @@ impl Reader {
     }
 
     pub(super) fn conclude(&self, solid: &carrier::Reading, ring: &carrier::Reading) -> Extraction {
-        let readings = [
-            self.read(Carrier::Solid, solid),
-            self.read(Carrier::Ring, ring),
-        ];
+        let carriers = [(Carrier::Solid, solid), (Carrier::Ring, ring)];
+        let decoded = carriers.map(|(_, reading)| {
+            likeliest(reading.hypotheses.iter().filter_map(|h| self.decode(h)))
+        });
+        // One model carries one payload of a key: the one that speaks loudest. What a carrier hears of it that decodes nothing, or
+        // another one, does not count.
+        let heard = decoded.iter().flatten();
+        let payload = heard
+            .min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+            .map(|loudest| loudest.payload);
+        let mut decoded = decoded.into_iter();
+        let readings = carriers.map(|(name, reading)| {
+            let own = decoded.next().flatten();
+            let own = own.filter(|own| Some(own.payload) == payload);
+            self.read(name, reading, own, payload.is_some())
+        });
         conclude(readings, self.input)
     }
 
-    fn read(&self, name: Carrier, reading: &carrier::Reading) -> Reading {
+    /// What a carrier says, of which a payload was decoded or not; and whether one was decoded of any.
+    fn read(
+        &self,
+        name: Carrier,
+        reading: &carrier::Reading,
+        decoded: Option<Candidate>,
+        is_any_decoded: bool,
+    ) -> Reading {
         let hypotheses = &reading.hypotheses;
-        let (candidate, other) = match (
-            likeliest(hypotheses.iter().filter_map(|h| self.decode(h))),
-            self.expected,
-        ) {
+        let (candidate, other) = match (decoded, self.expected) {
             (Some(decoded), Some(expected)) if decoded.payload != expected => {
                 let other = Other {
                     payload: decoded.payload,
@@ -172,12 +188,8 @@ impl Reader {
                 };
                 (None, Some(other))
             }
-            (Some(decoded), _) => (Some(decoded), None),
-            (None, Some(expected)) => (
-                likeliest(hypotheses.iter().map(|h| self.fit(h, expected))),
-                None,
-            ),
-            (None, None) => (None, None),
+            (None, Some(expected)) if !is_any_decoded => (self.fit(hypotheses, expected), None),
+            (decoded, _) => (decoded, None),
         };
         let best = |ln_p: &dyn Fn(&Hypothesis) -> f64| {
             let charged = hypotheses.iter().map(|h| union(ln_p(h), self.charge(h)));
@@ -266,21 +278,29 @@ impl Reader {
         })
     }
 
-    /// The expected payload, held against the symbols that other payloads of the same key do not share.
-    fn fit(&self, hypothesis: &Hypothesis, payload: Payload) -> Candidate {
-        let codeword = Codeword::new(self.check.message(payload));
-        let sign = |symbol| codeword.sign(symbol);
-        let others = hypothesis
-            .symbols
-            .iter()
-            .filter(|soft| soft.symbol != Symbol::Pilot);
-        let ln_p =
-            Statistic::new(others.map(|soft| (soft.value * sign(soft.symbol), soft.weight))).ln_p();
-        Candidate {
+    /// The expected payload, held against the symbols that are no pilots, where nothing was decoded.
+    ///
+    /// Neighbours of a payload that is there share most of its parities, so it has to prove itself by its check bits: of all that
+    /// could follow it, they must fit best, in the way of reading in which any fit best. Those of a payload that no suspect was
+    /// marked with are independent of the suspect: they do so with a probability of 2^-12.
+    fn fit(&self, hypotheses: &[Hypothesis], payload: Payload) -> Option<Candidate> {
+        let candidates = hypotheses.iter().map(|hypothesis| {
+            let message = complete(&hypothesis.symbols, payload.number(), Payload::BITS);
+            let codeword = Codeword::new(message);
+            let sign = |symbol| codeword.sign(symbol);
+            let symbols = hypothesis.symbols.iter();
+            let others = symbols.filter(|soft| soft.symbol != Symbol::Pilot);
+            let others = Statistic::new(others.map(|s| (s.value * sign(s.symbol), s.weight)));
+            let ln_p = union(others.ln_p(), self.charge(hypothesis));
+            (ln_p, message, hypothesis)
+        });
+        let (ln_p, message, hypothesis) = candidates.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let codeword = Codeword::new(message);
+        (self.check.message(payload) == message).then(|| Candidate {
             payload,
-            all: against(&hypothesis.symbols, sign),
-            ln_p: union(ln_p, self.charge(hypothesis)),
-        }
+            all: against(&hypothesis.symbols, |symbol| codeword.sign(symbol)),
+            ln_p,
+        })
     }
 }
 
@@ -307,7 +327,13 @@ fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction
     let best = |ln_p: fn(&Reading) -> f64| {
         union(readings.iter().map(ln_p).fold(0.0, f64::min), LN_CARRIERS)
     };
-    let ln_p = best(|reading| reading.report.ln_p);
+    let ln_p_payload = best(|reading| reading.ln_p_payload);
+    // The number beside a payload speaks for it: pilots speak for the key alone.
+    let ln_p = if ln_p_payload <= LN_P_FOUND {
+        ln_p_payload
+    } else {
+        best(|reading| reading.report.ln_p)
+    };
     let [first, second] = &readings;
     let loudest = if second.ln_p_payload < first.ln_p_payload {
         second
@@ -321,7 +347,7 @@ fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction
         number, agreement, ..
     } = loudest.report;
     let tag = loudest.report.tag.clone();
-    let (verdict, reason) = if best(|reading| reading.ln_p_payload) <= LN_P_FOUND {
+    let (verdict, reason) = if ln_p_payload <= LN_P_FOUND {
         (Verdict::Found, None)
     } else if let Some(Other { payload, .. }) = other.filter(|_| ln_p_other <= LN_P_TRACE) {
         let named = payload

@@ -374,8 +374,8 @@ fn reported_bounds_hold_for_ten_thousand_keys() {
     let [mut blind, mut informed] = [Tail::default(), Tail::default()];
     for number in 0..10_000 {
         let key = random_key(number);
-        blind.add(extract(&evidence, &key).ln_p);
-        informed.add(verify(&evidence, &key, expected).ln_p);
+        blind.add(extract(&evidence, &key).details().ln_p);
+        informed.add(verify(&evidence, &key, expected).details().ln_p);
     }
     blind.hold("extract");
     informed.hold("verify");

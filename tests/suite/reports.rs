@@ -180,7 +180,7 @@ fn many_keys_are_charged_in_all_that_is_said() {
     };
     let whole = part(&rings, rings.len() / RING_BYTES);
     let alone = extract(&whole, &key(1));
-    assert_eq!(many(&whole, 1), [alone.clone()]);
+    assert_eq!(many(&whole, 1), std::slice::from_ref(&alone));
     let [first, second, third] = many(&whole, 3).try_into().unwrap();
     assert_eq!(first.number, alone.number);
     assert_eq!(first.input, Input::Evidence);

@@ -3,8 +3,11 @@
 use crate::support::fixtures::{asteroid, gallery, key, marked, payload};
 use crate::support::gltf_builder::{Model, Packing};
 use glam::DVec3;
+use meshmark::attack::{crop, noise, simplify};
+use meshmark::carrier::{ring, solid};
+use meshmark::document::Document;
 use meshmark::mesh::{Mesh, shapes};
-use meshmark::scene::to_glb;
+use meshmark::scene::{Scene, to_glb};
 use meshmark::{
     Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Payload, Stage, Strength, Verdict,
     demo_model, embed, extract, ignore, inspect, measure, verify,
@@ -178,6 +181,53 @@ fn verify_never_takes_one_payload_for_another() {
         );
     }
 }
+
+/// A damaged mark, of which nothing is decoded any more: a neighbour in number shares two thirds of the symbols, and its bound alone
+/// would do.
+#[wasm_bindgen_test(unsupported = test)]
+fn verify_names_no_neighbour_of_a_damaged_mark() {
+    let host = simplify(&shapes::asteroid(70, 100), 0.5);
+    let options = EmbedOptions {
+        carriers: vec![Carrier::Ring],
+        ..strong()
+    };
+    let number = 1_000_005;
+    let payload = Payload::from_number(number).unwrap();
+    let model = embed(
+        &to_glb(&host),
+        &Files::new(),
+        payload,
+        &key(1),
+        &options,
+        &mut ignore,
+    );
+    let document = model.unwrap().model;
+    let marked = Scene::gather(&Document::read(&document, &Files::new()).unwrap()).unwrap();
+    let [mut num_right, mut num_undecoded] = [0, 0];
+    for (seed, amplitude) in (0..8).flat_map(|seed| NOISES.map(|amplitude| (seed, amplitude))) {
+        let damaged = noise(&crop(&marked.mesh, 0.6, seed), amplitude, seed);
+        let evidence = Evidence {
+            ring: ring::Measurement::new(&damaged),
+            solid: solid::Measurement::from_bytes(&[]).unwrap(),
+        };
+        let is_found = |number| {
+            let payload = Payload::from_number(number).unwrap();
+            verify(&evidence, &key(1), payload).verdict == Verdict::Found
+        };
+        num_right += u32::from(is_found(number));
+        num_undecoded += u32::from(extract(&evidence, &key(1)).number.is_none());
+        for neighbour in [-5, -4, -1, 1, 2, 3, 4, 9].map(|step| number.wrapping_add_signed(step)) {
+            assert!(!is_found(neighbour), "{neighbour}, seed {seed}");
+        }
+    }
+    assert!(
+        num_right > 0 && num_undecoded > 0,
+        "{num_right} found, {num_undecoded} not decoded"
+    );
+}
+
+/// Noise that leaves of these marks between all and nothing.
+const NOISES: [f64; 3] = [0.0012, 0.0014, 0.0016];
 
 #[wasm_bindgen_test(unsupported = test)]
 fn verdict_is_cannot_check_where_there_is_too_little() {

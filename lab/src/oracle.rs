@@ -5,8 +5,7 @@
 
 use crate::seed::Seed;
 use meshmark::carrier::{ring, solid};
-use meshmark::code::{Checked, Codeword, SoftSymbol, Symbol};
-use meshmark::detection::Statistic;
+use meshmark::code::{Checked, Codeword, Symbol};
 use meshmark::key::Prf;
 use meshmark::{Evidence, Extraction, Key, Payload, Verdict, extract, verify};
 use rayon::prelude::*;
@@ -15,6 +14,12 @@ use std::fmt::Write;
 
 /// Step of RING's quantizer (docs/FORMAT.md).
 const STEP: f64 = 0.04;
+
+/// Below which features RING's ways read: three by connectivity, three by geometry, four by position.
+const CUTS: [f64; 10] = {
+    let all = f64::INFINITY;
+    [all, 0.12, 0.04, all, 0.12, 0.04, all, all, all, all]
+};
 
 /// A feature above RING's cuts, 0.12 and 0.04: of the ways by connectivity, it is read in one alone.
 const ABOVE: f64 = 0.16;
@@ -100,30 +105,63 @@ impl Detector {
         extract(&suspect(rings, None), &self.key).verdict == Verdict::Found
     }
 
-    /// The same answer as [`fits`](Self::fits), in a tenth of the time where it is no: of rings by chance, none is decoded, and neither
-    /// pilots nor the other symbols come near the 13.3 nats that are asked of a way.
-    fn fits_by_chance(&mut self, rings: &[Ring]) -> bool {
-        let near = 13.0;
-        let exponent = |symbols: &[SoftSymbol], are_pilots: bool| {
-            let of = symbols
-                .iter()
-                .filter(|soft| (soft.symbol == Symbol::Pilot) == are_pilots);
-            let sign =
-                |soft: &SoftSymbol| (soft.value * self.codeword.sign(soft.symbol), soft.weight);
-            -Statistic::new(of.map(sign)).ln_p()
+    /// What the key owns of the rings below a number, each by itself.
+    fn owned(&self, num_rings: u64) -> Vec<Owned> {
+        let read = |number, feature| {
+            suspect(&[Ring { number, feature }], None)
+                .ring
+                .read(&self.key)
         };
-        let reading = suspect(rings, None).ring.read(&self.key);
-        let is_near = reading.hypotheses.iter().any(|hypothesis| {
-            [true, false]
-                .into_iter()
-                .any(|are_pilots| exponent(&hypothesis.symbols, are_pilots) > near)
-        });
-        if is_near {
+        let mut owned = Vec::new();
+        for number in 0..num_rings {
+            let [first, second] = [0.0, STEP / 4.0].map(|feature| read(number, feature).hypotheses);
+            for (way, (first, second)) in first.iter().zip(&second).enumerate() {
+                for (first, second) in first.symbols.iter().zip(&second.symbols) {
+                    let sign = self.codeword.sign(first.symbol);
+                    owned.push(Owned {
+                        ring: number as usize,
+                        way,
+                        is_pilot: first.symbol == Symbol::Pilot,
+                        cos: sign * first.value,
+                        sin: -sign * second.value,
+                    });
+                }
+            }
+        }
+        owned
+    }
+
+    /// The same answer as [`fits`](Self::fits), in a tenth of the time where it is no: of rings by chance none is decoded, and neither
+    /// pilots nor the other symbols come near the 13.3 nats that are asked of a way.
+    fn fits_by_chance(&mut self, rings: &[Ring], owned: &[Owned]) -> bool {
+        const NEAR: f64 = 13.0;
+        let turns = |ring: &Ring| libm::sincos(TAU * ring.feature / STEP);
+        let turns: Vec<(f64, f64)> = rings.iter().map(turns).collect();
+        let mut sums = [[(0.0, 0.0); 2]; CUTS.len()];
+        for owned in owned {
+            if rings[owned.ring].feature.abs() < CUTS[owned.way] {
+                let (sin, cos) = turns[owned.ring];
+                let (sum, energy) = &mut sums[owned.way][usize::from(owned.is_pilot)];
+                *sum += cos * owned.cos - sin * owned.sin;
+                *energy += 1.0;
+            }
+        }
+        let is_near = |(sum, energy): &(f64, f64)| *sum > 0.0 && sum * sum > NEAR * energy;
+        if sums.iter().flatten().any(is_near) {
             return self.fits(rings);
         }
         self.questions += 1;
         false
     }
+}
+
+/// What a key makes of a ring's address in one way of reading: the cosine and the sine of its dither, times the symbol's sign.
+struct Owned {
+    ring: usize,
+    way: usize,
+    is_pilot: bool,
+    cos: f64,
+    sin: f64,
 }
 
 /// Random numbers of a forger.
@@ -164,8 +202,9 @@ fn with_details(detector: &mut Detector) -> bool {
 
 /// Forges with found, partial and none. Returns the questions until the first partial fit, if there was one.
 fn with_verdicts(detector: &mut Detector, chance: &mut Chance) -> Option<(u64, bool)> {
+    let owned = detector.owned(RINGS);
     let mut core: Vec<Ring> = Vec::new();
-    while core.is_empty() || !detector.fits_by_chance(&core) {
+    while core.is_empty() || !detector.fits_by_chance(&core, &owned) {
         if detector.questions >= PATIENCE {
             return None;
         }

@@ -191,11 +191,8 @@ impl Reader {
             (None, Some(expected)) if !is_any_decoded => (self.fit(hypotheses, expected), None),
             (decoded, _) => (decoded, None),
         };
-        let best = |ln_p: &dyn Fn(&Hypothesis) -> f64| {
-            let charged = hypotheses.iter().map(|h| union(ln_p(h), self.charge(h)));
-            charged.fold(0.0, f64::min)
-        };
-        let pilots = best(&|h| pilots(&h.symbols).ln_p());
+        let charged = |h: &Hypothesis| union(pilots(&h.symbols).ln_p(), self.charge(h));
+        let pilots = hypotheses.iter().map(charged).fold(0.0, f64::min);
         let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| candidate.ln_p);
         // A payload is named where chance is excluded, as the verdict is found: whoever learns a payload that chance gave, and
         // expects it from then on, no longer pays for having guessed it.
@@ -223,8 +220,9 @@ impl Reader {
                 // give ln p = -n: more is not to be hoped for.
                 Carrier::Ring => {
                     let owned = reading.num_addresses as f64 / ring::SHARE as f64;
-                    let at_best = best(&|_| -owned + self.ln_guesses());
-                    union(at_best, LN_CARRIERS) <= LN_P_FOUND
+                    let charge = |h: &Hypothesis| self.ln_guesses() + self.charge(h) + LN_CARRIERS;
+                    let first = hypotheses.first(); // all are charged alike
+                    first.is_some_and(|h| charge(h) - owned <= LN_P_FOUND)
                 }
                 // A surface is read at a pitch or not at all, which no key has a part in; one that is read has 680 squared pitches or
                 // more, and a window for each: some hundreds of nats, where a mark that can be found needs 70.
@@ -340,41 +338,39 @@ fn conclude(readings: [Reading; Carrier::ALL.len()], input: Input) -> Extraction
     } else {
         first
     };
-    let others = readings.iter().filter_map(|reading| reading.other);
-    let other = others.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let other = match (first.other, second.other) {
+        (Some(a), Some(b)) if b.ln_p < a.ln_p => Some(b),
+        (a, b) => a.or(b),
+    };
     let ln_p_other = other.map_or(0.0, |other| union(other.ln_p, LN_CARRIERS));
     let CarrierReading {
         number, agreement, ..
     } = loudest.report;
     let tag = loudest.report.tag.clone();
+    let other = other.filter(|_| ln_p_other <= LN_P_TRACE);
     let (verdict, reason) = if ln_p_payload <= LN_P_FOUND {
         (Verdict::Found, None)
-    } else if let Some(Other { payload, .. }) = other.filter(|_| ln_p_other <= LN_P_TRACE) {
-        let named = payload
-            .tag()
-            .unwrap_or_else(|| payload.number().to_string());
-        let name = if ln_p_other <= LN_P_FOUND {
-            format!(": {named}")
-        } else {
-            String::new()
-        };
-        (
-            Verdict::Partial,
-            Some(format!(
-                "The model carries a mark of this key, but with another payload{name}."
-            )),
-        )
+    } else if other.is_some() {
+        let reason = "The model carries a mark of this key, but with another payload.";
+        (Verdict::Partial, Some(reason))
     } else if ln_p <= LN_P_TRACE {
         let reason =
             "Something of this key is there, but too little to read its payload with certainty.";
-        (Verdict::Partial, Some(reason.to_owned()))
+        (Verdict::Partial, Some(reason))
     } else if !readings.iter().any(|reading| reading.is_enough) {
-        let reason = "The model offers too few places for symbols to tell.";
-        (Verdict::CannotCheck, Some(reason.to_owned()))
+        let reason = "The model has too few places for symbols to tell.";
+        (Verdict::CannotCheck, Some(reason))
     } else {
-        let reason = "The places for symbols that are this key's agree as by chance.";
-        (Verdict::None, Some(reason.to_owned()))
+        let reason = "This key's places for symbols agree as by chance.";
+        (Verdict::None, Some(reason))
     };
+    let mut reason = reason.map(str::to_owned);
+    if let (Some(reason), Some(other)) = (&mut reason, other.filter(|_| ln_p_other <= LN_P_FOUND)) {
+        let tag = other.payload.tag();
+        reason.push_str(" It is ");
+        reason.push_str(&tag.unwrap_or_else(|| other.payload.number().to_string()));
+        reason.push('.');
+    }
     Extraction {
         verdict,
         input,

@@ -182,6 +182,9 @@ fn verify_never_takes_one_payload_for_another() {
     }
 }
 
+/// Noise that leaves of these marks between all and nothing.
+const NOISES: [f64; 3] = [0.0012, 0.0014, 0.0016];
+
 /// A damaged mark, of which nothing is decoded any more: a neighbour in number shares two thirds of the symbols, and its bound alone
 /// would do.
 #[wasm_bindgen_test(unsupported = test)]
@@ -225,9 +228,6 @@ fn verify_names_no_neighbour_of_a_damaged_mark() {
         "{num_right} found, {num_undecoded} not decoded"
     );
 }
-
-/// Noise that leaves of these marks between all and nothing.
-const NOISES: [f64; 3] = [0.0012, 0.0014, 0.0016];
 
 #[wasm_bindgen_test(unsupported = test)]
 fn verdict_is_cannot_check_where_there_is_too_little() {

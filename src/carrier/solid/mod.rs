@@ -107,6 +107,9 @@ struct Lattice {
     /// In pitches.
     shift: DVec3,
     symbols: Prf,
+    /// Other dithers for all symbols but pilots: what may not depend on them must stay as it is.
+    #[cfg(test)]
+    redrawn: Option<Prf>,
 }
 
 impl Lattice {
@@ -126,6 +129,8 @@ impl Lattice {
             rotation: DMat3::from_quat(turn),
             shift: DVec3::new(uniform(3), uniform(4), uniform(5)) - DVec3::splat(0.5),
             symbols: key.prf("solid"),
+            #[cfg(test)]
+            redrawn: None,
         }
     }
 
@@ -145,8 +150,14 @@ impl Lattice {
         // frame's extent, so there are none.
         debug_assert!([i, j, k].iter().all(|index| index.abs() < 1 << 19));
         let part = |index: i32| (index + (1 << 19)) as u64 & ((1 << 20) - 1);
-        let (dither, choice) = self.symbols.at(part(i) << 40 | part(j) << 20 | part(k));
-        (unit(dither), Symbol::select(choice))
+        let address = part(i) << 40 | part(j) << 20 | part(k);
+        let (dither, choice) = self.symbols.at(address);
+        let symbol = Symbol::select(choice);
+        #[cfg(test)]
+        if let Some(redrawn) = self.redrawn.as_ref().filter(|_| symbol != Symbol::Pilot) {
+            return (unit(redrawn.at(address).0), symbol);
+        }
+        (unit(dither), symbol)
     }
 }
 

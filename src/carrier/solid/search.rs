@@ -41,12 +41,20 @@ pub fn read<'a>(
     key: &Key,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
-    let lattice = Lattice::of(key);
+    read_at(surfaces, &Lattice::of(key), progress)
+}
+
+/// The same with the lattice of a key.
+fn read_at<'a>(
+    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
+    lattice: &Lattice,
+    progress: &mut dyn Progress,
+) -> Result<Reading, Cancelled> {
     let Some(suspect) = surfaces.next() else {
         return Ok(Reading::default());
     };
     let axes = suspect.axes;
-    let mut search = Search::new(&lattice, suspect);
+    let mut search = Search::new(lattice, suspect);
     let is_undetermined = axes.contains(&Axes::Undetermined);
     let share = if is_undetermined {
         SHARE_BEFORE_SCAN
@@ -437,4 +445,76 @@ fn turns(near: bool) -> Vec<DMat3> {
         }
     }
     turns
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
+mod tests {
+    use super::super::Surfaces;
+    use super::*;
+    use crate::mesh::{Mesh, shapes};
+    use crate::progress::ignore;
+
+    fn reading(surfaces: &[Surface], lattice: &Lattice) -> Reading {
+        read_at(
+            &mut surfaces.iter().map(Cow::Borrowed),
+            lattice,
+            &mut ignore,
+        )
+        .unwrap()
+    }
+
+    /// What is followed, what it is charged, and what each symbol weighs.
+    fn choices(reading: &Reading) -> Vec<(f64, Vec<(Symbol, f64)>)> {
+        let ways = reading.hypotheses.iter();
+        ways.map(|way| {
+            let symbols = way.symbols.iter().map(|soft| (soft.symbol, soft.weight));
+            (way.ln_num_tests, symbols.collect())
+        })
+        .collect()
+    }
+
+    /// docs/SECURITY.md, 9 and 10: neither which ways are followed nor any weight depends on the dithers that testify.
+    #[test]
+    fn nothing_that_is_chosen_depends_on_the_dithers_that_testify() {
+        let rock = shapes::asteroid(20, 30);
+        let of = |mesh: &Mesh, stages: fn(Surfaces) -> Surfaces| -> Vec<Surface> {
+            stages(Surfaces::new(mesh)).collect()
+        };
+        let suspects = [
+            ("undone", of(&rock, Surfaces::first_kind), 3),
+            ("scanned", of(&shapes::torus(40, 24), Surfaces::plain), 3),
+        ];
+        let mut num_split = 0;
+        for (name, surfaces, keys) in &suspects {
+            for number in 0..*keys {
+                let key = Key::from_bytes(&[number + 1; Key::BYTES]).unwrap();
+                let drawn = reading(surfaces, &Lattice::of(&key));
+                for other in 0..3 {
+                    let lattice = Lattice {
+                        redrawn: Some(
+                            Key::from_bytes(&[100 + other; Key::BYTES])
+                                .unwrap()
+                                .prf("x"),
+                        ),
+                        ..Lattice::of(&key)
+                    };
+                    let redrawn = reading(surfaces, &lattice);
+                    assert!(choices(&redrawn) == choices(&drawn), "{name}, key {number}");
+                    let values = |reading: &Reading| -> Vec<f64> {
+                        let ways = reading.hypotheses.iter();
+                        ways.flat_map(|way| way.symbols.iter().map(|soft| soft.value))
+                            .collect()
+                    };
+                    assert_ne!(
+                        values(&redrawn),
+                        values(&drawn),
+                        "{name}: nothing was redrawn"
+                    );
+                }
+                num_split += drawn.hypotheses.len().saturating_sub(2 * FOLLOWED);
+            }
+        }
+        assert!(num_split > 0, "no search was begun");
+    }
 }

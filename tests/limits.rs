@@ -331,3 +331,30 @@ fn specks_far_from_what_is_read_are_answered() {
         assert_eq!(report["verdict"], "none", "{report}");
     }
 }
+
+/// Needles without an area meet clusters everywhere between balls whose frame has no axes: of all that was tried, what makes a check work
+/// most.
+#[test]
+fn needles_among_balls_are_answered() {
+    let places = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ]
+    .map(|place| place.map(|x| x * 0.5774));
+    // Multiples of irrational numbers fill a cube evenly.
+    let point = |k: u32| {
+        let within = |turns: f64| (f64::from(k) * turns).fract() * 2.4 - 1.2;
+        [within(0.8192), within(0.6710), within(0.5497)].map(|x| x as f32)
+    };
+    let needles = loose((0..500).map(|k| {
+        let [a, b] = [2 * k, 2 * k + 1].map(point);
+        [a, b, [b[0] + 1e-4, b[1], b[2] + 1e-4]]
+    }));
+    let balls = balls_and_specks(0.27, &places, 1.2);
+    let model = to_glb(&Mesh::joined([balls, needles]));
+    let folder = Folder::with("needles", &model);
+    let report = folder.run("extract model.glb --key-file key");
+    assert_eq!(report["verdict"], "none", "{report}");
+}

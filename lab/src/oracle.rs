@@ -31,8 +31,14 @@ const RINGS: u64 = 600;
 /// Features that are tried at an address: eighths of a step come within 0.92 of full agreement.
 const PHASES: u64 = 8;
 
-/// Addresses that the forger with details asks about.
-const ADDRESSES: u64 = 400;
+/// Owned addresses that the forger with details looks for: a third of them hold pilots.
+const OWNED: usize = 300;
+
+/// Features that the forger with details tries at an address: quarters of a step come within 0.7 of full agreement.
+const QUARTERS: u32 = 4;
+
+/// Rings by chance beside pilots.
+const OTHERS: u64 = 24;
 
 /// So many pilots that agree to 0.9 reach 73 nats: any payload whose check bits hold is then found, for the guess, the charges and 1e-9 take 58.
 const PILOTS: usize = 90;
@@ -101,9 +107,15 @@ impl Detector {
         self.verify(rings, None).verdict == Verdict::Found
     }
 
-    fn is_found_blindly(&mut self, rings: &[Ring]) -> bool {
+    /// Whether some payload is found where pilots agree and a few other rings say anything: one whose check bits hold by chance will do.
+    fn is_found_among(&mut self, pilots: &[Ring], chance: &mut Chance) -> bool {
         self.questions += 1;
-        extract(&suspect(rings, None), &self.key).verdict == Verdict::Found
+        let by_chance = (0..OTHERS).map(|place| Ring {
+            number: (self.questions << 20) + place,
+            feature: (chance.unit() - 0.5) * STEP,
+        });
+        let rings: Vec<Ring> = pilots.iter().copied().chain(by_chance).collect();
+        extract(&suspect(&rings, None), &self.key).verdict == Verdict::Found
     }
 
     /// What the key owns of the rings below a number, each by itself.
@@ -178,27 +190,42 @@ impl Chance {
     }
 }
 
-/// Forges with the details of reports: whether an address is owned, and at two features how far it agrees.
-fn with_details(detector: &mut Detector) -> bool {
+/// Forges with the details of reports: whether an address is owned, and by ln p at which feature it agrees best. Where the feature
+/// makes no difference, the address holds no pilot.
+fn with_details(detector: &mut Detector, chance: &mut Chance) -> bool {
     let mut ask =
         |rings: &[Ring], lone| detector.verify(rings, Some(lone)).details().carriers[1].clone();
     let ring = |number, feature| Ring { number, feature };
     // An address by geometry and a place of which the key owns nothing.
     let lone = (0..).find(|&number| ask(&[ring(number, 0.0)], number).owned_addresses == 0);
     let lone = lone.expect("a key owns one address in four");
-    let mut forged = Vec::new();
-    for number in 1000..1000 + ADDRESSES {
-        let first = ask(&[ring(number, ABOVE)], lone);
-        if first.owned_addresses == 0 {
-            continue;
-        }
-        // Agreement is s cos(2 pi (d + f / STEP)), and a quarter of a step further -s sin of it.
-        let second = ask(&[ring(number, ABOVE + STEP / 4.0)], lone);
-        let turn = libm::atan2(-second.agreement, first.agreement) / TAU;
-        let feature = ABOVE + STEP * (-turn).rem_euclid(1.0);
-        forged.push(ring(number, feature));
+    let numbers = (1000..).filter(|&number| ask(&[ring(number, ABOVE)], lone).owned_addresses > 0);
+    let owned: Vec<u64> = numbers.take(OWNED).collect();
+    let mut rings: Vec<Ring> = Vec::new();
+    while rings.is_empty() || ask(&rings, lone).ln_p == 0.0 {
+        let features = owned.iter().map(|&n| ring(n, ABOVE + STEP * chance.unit()));
+        rings = features.collect();
     }
-    detector.verify(&forged, Some(lone)).verdict == Verdict::Found
+    let mut pilots = Vec::new();
+    for place in 0..rings.len() {
+        let answers = (0..QUARTERS).map(|quarter| {
+            let feature = ABOVE + STEP * f64::from(quarter) / f64::from(QUARTERS);
+            rings[place].feature = feature;
+            (ask(&rings, lone).ln_p, feature)
+        });
+        let mut answers: Vec<(f64, f64)> = answers.collect();
+        answers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        rings[place].feature = answers[0].1;
+        if answers[0].0 < answers[QUARTERS as usize - 1].0 {
+            pilots.push(rings[place]);
+        }
+    }
+    while detector.questions < PATIENCE {
+        if detector.is_found_among(&pilots, chance) {
+            return true;
+        }
+    }
+    false
 }
 
 /// Forges with found, partial and none. Returns the questions until the first partial fit, if there was one.
@@ -253,12 +280,7 @@ fn with_verdicts(detector: &mut Detector, chance: &mut Chance) -> Option<(u64, b
         }
         // Where it is pilots that fit, they say nothing of a payload: any whose check bits hold will do.
         if gained.len() >= PILOTS {
-            let mut whole = gained.clone();
-            whole.extend((0..24).map(|place| Ring {
-                number: (fresh << 20) + place,
-                feature: (chance.unit() - 0.5) * STEP,
-            }));
-            if detector.is_found_blindly(&whole) {
+            if detector.is_found_among(&gained, chance) {
                 return Some((until_partial, true));
             }
         }
@@ -271,14 +293,14 @@ pub fn table(seed: &Seed, num_keys: u64) -> String {
     let row = |index: u64| {
         let expected = seed.payload(&format!("oracle, payload {index}"));
         let detector = || Detector::new(seed.key("oracle", index), expected);
-        let mut open = detector();
-        let is_open_found = with_details(&mut open);
-        let mut closed = detector();
-        let mut chance = Chance {
+        let chance = || Chance {
             prf: seed.key("oracle, chance", index).prf("features"),
             drawn: 0,
         };
-        let ended = with_verdicts(&mut closed, &mut chance);
+        let mut open = detector();
+        let is_open_found = with_details(&mut open, &mut chance());
+        let mut closed = detector();
+        let ended = with_verdicts(&mut closed, &mut chance());
         let number = |is_found: bool, questions: u64| match is_found {
             true => questions.to_string(),
             false => format!("not within {questions}"),

@@ -100,8 +100,8 @@ pub struct Details {
 impl Extraction {
     /// What follows the key: for its owner, and for nobody who may ask about suspects of their own making.
     ///
-    /// The agreement of a suspect with one address says whether the key owns it, and at two features what its dither is. Some
-    /// hundreds of such answers are enough to make a suspect in which the mark is found (docs/SECURITY.md).
+    /// They say of a suspect with one address whether the key owns it, and of one with many at which features they agree better. Some
+    /// thousands of such answers are enough to make a suspect in which the mark is found (docs/SECURITY.md).
     pub fn details(&self) -> &Details {
         &self.details
     }

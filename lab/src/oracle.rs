@@ -279,10 +279,8 @@ fn with_verdicts(detector: &mut Detector, chance: &mut Chance) -> Option<(u64, b
             probe.pop();
         }
         // Where it is pilots that fit, they say nothing of a payload: any whose check bits hold will do.
-        if gained.len() >= PILOTS {
-            if detector.is_found_among(&gained, chance) {
-                return Some((until_partial, true));
-            }
+        if gained.len() >= PILOTS && detector.is_found_among(&gained, chance) {
+            return Some((until_partial, true));
         }
     }
     Some((until_partial, false))

@@ -54,7 +54,7 @@ export type Input = "model" | "evidence";
 
 export interface ReadOptions {
   /**
-   * Whether `Details` are told where nothing is found too. Default: no. They follow the key: whoever sees some hundreds of them, of
+   * Whether `Details` are told where nothing is found too. Default: no. They follow the key: whoever sees some thousands of them, of
    * suspects of their own making, can make one that is found. For the key's owner.
    */
   details?: boolean;

@@ -2,16 +2,17 @@
 #![allow(missing_docs)] // criterion's macros write undocumented functions
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use meshmark::attack::{simplify, smooth};
-use meshmark::carrier::osveta::{Ranking, rank};
-use meshmark::carrier::{Carrier, Host, Mark, ring, solid};
-use meshmark::code::{Checked, Codeword, decode};
-use meshmark::document::Document;
-use meshmark::geometry::spectral::{self, InverseFilter};
-use meshmark::geometry::{Pose, outward, roughness};
-use meshmark::mesh::{Admissible, Edges, shapes};
-use meshmark::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, Evidence, Files, Key, Payload, embed, extract, ignore};
+use meshmark::internals::attack::{simplify, smooth};
+use meshmark::internals::carrier::osveta::{Ranking, rank};
+use meshmark::internals::carrier::{Carrier, Host, Mark, ring, solid};
+use meshmark::internals::code::{Checked, Codeword, decode};
+use meshmark::internals::document::Document;
+use meshmark::internals::geometry::spectral::{self, InverseFilter};
+use meshmark::internals::geometry::{Pose, outward, roughness};
+use meshmark::internals::mesh::{Admissible, Edges, shapes};
+use meshmark::internals::progress::ignore;
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract};
 
 /// 0.04 % of the diagonal.
 const RMS_REL: f64 = 0.0004;
@@ -29,8 +30,14 @@ fn pipeline(criterion: &mut Criterion) {
     let key = key(1);
     let payload = Payload::from_tag("BENCH").expect("a tag");
     let options = EmbedOptions::default();
-    let marked = embed(&host, &files, payload, &key, &options, &mut ignore).expect("a mark");
-    let evidence = Evidence::measure(&mesh);
+    let marked = embed(
+        Model::new(&host).with_files(&files),
+        payload,
+        &key,
+        &options,
+    )
+    .expect("a mark");
+    let evidence = Evidence::of_mesh(&mesh);
 
     let mut group = criterion.benchmark_group(format!("{} vertices", mesh.positions.len()));
     group
@@ -42,15 +49,22 @@ fn pipeline(criterion: &mut Criterion) {
         b.iter(|| Scene::gather(&document));
     });
     group.bench_function("embed, whole", |b| {
-        b.iter(|| embed(&host, &files, payload, &key, &options, &mut ignore))
+        b.iter(|| {
+            embed(
+                Model::new(&host).with_files(&files),
+                payload,
+                &key,
+                &options,
+            )
+        })
     });
-    group.bench_function("measure", |b| b.iter(|| Evidence::measure(&mesh)));
+    group.bench_function("measure", |b| b.iter(|| Evidence::of_mesh(&mesh)));
     group.bench_function("extract, unmarked", |b| b.iter(|| extract(&evidence, &key)));
     group.bench_function("extract, marked", |b| {
         let document = Document::read(&marked.model, &files).expect("a document");
         let scene = Scene::gather(&document).expect("a scene");
         b.iter_batched(
-            || Evidence::measure(&scene.mesh),
+            || Evidence::of_mesh(&scene.mesh),
             |evidence| extract(&evidence, &key),
             BatchSize::LargeInput,
         );

@@ -48,6 +48,9 @@ impl Payload {
     pub const BITS: u32 = 48;
 
     /// A payload from a whole number below 2^48.
+    ///
+    /// # Errors
+    /// [`PayloadError::Range`] for any other.
     pub fn from_number(number: u64) -> Result<Payload, PayloadError> {
         if number >> Self::BITS == 0 {
             Ok(Payload(number))
@@ -57,6 +60,9 @@ impl Payload {
     }
 
     /// A payload from a tag of 1 to 8 characters.
+    ///
+    /// # Errors
+    /// Where it is empty or longer, has a character outside the alphabet, or ends in a dot.
     pub fn from_tag(tag: &str) -> Result<Payload, PayloadError> {
         let length = tag.chars().count();
         if !(1..=CHARACTERS).contains(&length) {

@@ -1,58 +1,67 @@
 //! Invisible, keyed, robust watermarks in the geometry of glTF models.
 //!
-//! [`embed`] puts a 48-bit payload into a model under a key. [`measure`] takes from any suspect copy all that needs no
-//! key; [`extract`] reads a payload from that with the key alone, and [`verify`] tests an expected one, each with a bound
-//! of the probability that it would say so of a model made without the key. [`note`] does the same with a short text.
+//! [`embed`] puts a 48-bit payload into a model under a key. [`detect`] reads one suspect with one key. [`measure`] takes from a
+//! suspect all that needs no key; [`extract`] reads a payload from that with the key alone, and [`verify`] tests an expected one.
+//! Each answer comes with a bound of the probability that it would be given of a model made without the key. [`embed_note`] and
+//! [`read_note`] do the same with a short text.
 //!
 //! ```
-//! use meshmark::{EmbedOptions, Files, Key, Payload, Verdict, demo_model, embed, extract, ignore, measure};
+//! use meshmark::{EmbedOptions, Key, Payload, Verdict, demo_model, detect, embed};
 //!
 //! # fn main() -> Result<(), meshmark::Error> {
 //! let key = Key::from_passphrase("Ada", "correct horse battery staple")?;
 //! let payload = Payload::from_tag("ADA-1")?;
-//! let files = Files::new();
-//! let marked = embed(&demo_model(), &files, payload, &key, &EmbedOptions::default(), &mut ignore)?;
-//! let evidence = measure(&marked.model, &files, &mut ignore)?;
-//! let found = extract(&evidence, &key);
+//! let marked = embed(&demo_model(), payload, &key, &EmbedOptions::default())?;
+//! let found = detect(&marked.model, &key, None)?;
 //! assert_eq!(found.verdict, Verdict::Found);
 //! assert_eq!(found.tag.as_deref(), Some("ADA-1"));
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! The rooms of the house, and who may know whom, are in docs/ARCHITECTURE.md; what may never change is in docs/FORMAT.md.
+//! A model is the bytes of a `.glb` or a `.gltf`. Where there is more to say of it, a [`Model`] takes the files that it names, and
+//! hears how far the work is. The folder `examples` has programs that mark, check, test many keys and read a `.gltf` with buffers.
+//!
+//! The same bytes, key and options give the same marked bytes on every machine.
+#![cfg_attr(not(feature = "unstable-internals"), allow(dead_code, unused_imports))] // most rooms offer more than the pipelines use
 
-pub mod attack;
+mod attack;
 mod bits;
-pub mod carrier;
-pub mod code;
-pub mod detection;
+mod carrier;
+mod code;
+mod detection;
 mod digest;
-pub mod document;
-pub mod evidence;
-pub mod geometry;
-pub mod key;
-pub mod mesh;
+mod document;
+mod evidence;
+mod geometry;
+mod key;
+mod mesh;
 mod order;
 mod progress;
 mod random;
-pub mod scene;
-pub mod study;
+mod scene;
+mod study;
 mod watermark;
 
-#[cfg(target_arch = "wasm32")]
+#[cfg(feature = "unstable-internals")]
+pub mod internals;
+
+#[cfg(all(target_arch = "wasm32", feature = "wasm"))]
 mod wasm;
 
 pub use bits::{Payload, PayloadError};
-pub use carrier::Carrier;
-pub use document::Files;
-pub use evidence::Evidence;
-pub use key::Key;
-pub use progress::{Cancelled, Progress, Stage, ignore};
+pub use carrier::{Carrier, CarrierError};
+pub use code::{Block, TextError};
+pub use document::{DocumentError, Files};
+pub use evidence::{Evidence, EvidenceError};
+pub use key::{Key, KeyError};
+pub use progress::{Cancelled, Progress, Stage};
+pub use scene::SceneError;
 pub use watermark::{
     CarrierCapacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
-    Extraction, Forecast, Input, Inspection, Level, Strength, Verdict, detect, embed, extract,
-    extract_many, inspect, measure, note, verify,
+    Extraction, Forecast, Input, Inspection, Level, Model, NoteEmbedding, NoteReading, NoteReport,
+    NoteSize, Strength, Verdict, detect, embed, embed_note, extract, extract_many, file_names,
+    inspect, measure, note_capacity, read_note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 /// What the work is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Stage {
     /// Parsing the document and welding its scene.
     Read,

@@ -5,8 +5,8 @@
 //! Reading needs no key and no original: the mean of each bin against 1/2.
 
 use glam::DVec3;
-use meshmark::geometry::Distortion;
-use meshmark::mesh::Mesh;
+use meshmark::internals::geometry::Distortion;
+use meshmark::internals::mesh::Mesh;
 
 /// Halvings that find the strength, and each bin's power.
 const HALVINGS: u32 = 40;
@@ -134,8 +134,8 @@ impl Norms {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshmark::attack::{noise, reorder, similarity, smooth};
-    use meshmark::mesh::shapes;
+    use meshmark::internals::attack::{noise, reorder, similarity, smooth};
+    use meshmark::internals::mesh::shapes;
 
     fn bits() -> Vec<bool> {
         (0..64).map(|i| i * i % 7 < 3).collect()

@@ -3,10 +3,10 @@
 use crate::baseline;
 use crate::models::{Class, Model};
 use crate::seed::Seed;
-use meshmark::document::Document;
-use meshmark::mesh::Mesh;
-use meshmark::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, EmbedReport, Files, Key, Payload, Strength, embed, ignore};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{EmbedOptions, EmbedReport, Files, Key, Payload, Strength, embed};
 use std::sync::OnceLock;
 
 /// Bits of the baseline's message: what its authors embed.
@@ -62,12 +62,8 @@ impl<'a> Case<'a> {
 
     /// A copy of a model under any key, at this case's strength.
     fn mark(&self, model: &[u8], key: &Key, payload: Payload) -> Result<Marked, String> {
-        let options = EmbedOptions {
-            strength: self.strength,
-            ..EmbedOptions::default()
-        };
-        let embedding = embed(model, &Files::new(), payload, key, &options, &mut ignore)
-            .map_err(|error| error.to_string())?;
+        let options = EmbedOptions::default().with_strength(self.strength);
+        let embedding = embed(model, payload, key, &options).map_err(|error| error.to_string())?;
         Ok(Marked {
             mesh: gathered(&embedding.model)?,
             bytes: embedding.model,

@@ -3,11 +3,11 @@
 use crate::baseline;
 use crate::case::Case;
 use crate::grid::{Kind, Row, Suspect};
-use meshmark::attack::{chain, similarity};
-use meshmark::geometry::Quality;
-use meshmark::mesh::Mesh;
-use meshmark::scene::to_glb;
-use meshmark::{Carrier, Extraction, Files, Payload, Verdict, extract, ignore, measure};
+use meshmark::internals::attack::{chain, similarity};
+use meshmark::internals::geometry::Quality;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::to_glb;
+use meshmark::{Carrier, Extraction, Payload, Verdict, extract, measure};
 use serde::{Deserialize, Serialize};
 
 /// What became of a mark in a row.
@@ -84,8 +84,7 @@ fn outcome(case: &Case, row: &Row) -> Result<Outcome, String> {
     let seed = case.seed.number(&purpose, 0);
     let suspect = row.suspect(case, reference, seed)?;
     let moved = similarity(&suspect, case.seed.number(&purpose, 1));
-    let evidence =
-        measure(&to_glb(&moved), &Files::new(), &mut ignore).map_err(|error| error.to_string())?;
+    let evidence = measure(&to_glb(&moved)).map_err(|error| error.to_string())?;
     let read = extract(&evidence, &case.key);
     Ok(Outcome {
         baseline: baseline_after(case, row, seed),

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use meshmark::Evidence;
-use meshmark::attack::mirror;
-use meshmark::carrier::{ring, solid};
-use meshmark::mesh::{Mesh, shapes};
+use meshmark::internals::attack::mirror;
+use meshmark::internals::carrier::{Measurement, ring, solid};
+use meshmark::internals::mesh::{Mesh, shapes};
 
 /// Each by its name.
 pub fn suspects() -> Vec<(String, Evidence)> {
@@ -19,17 +19,16 @@ pub fn suspects() -> Vec<(String, Evidence)> {
         ("cells mirrored", mirrored_cells()),
     ];
     let meshes = of_meshes.map(|(name, mesh)| {
-        let evidence = Evidence {
-            ring: ring::Measurement::new(&mesh),
-            solid: solid::Surfaces::new(&mesh).plain().collect(),
-        };
+        let evidence = Evidence::from_iter([
+            Measurement::Ring(ring::Measurement::new(&mesh)),
+            Measurement::Solid(solid::Surfaces::new(&mesh).plain().collect()),
+        ]);
         (format!("{name}, unmarked"), evidence.for_many_keys())
     });
     let rings = of_rings.map(|(name, bytes)| {
-        let evidence = Evidence {
-            ring: ring::Measurement::from_bytes(&bytes).expect("rings as they are stored"),
-            solid: solid::Measurement::from_bytes(&[]).expect("no surface is evidence too"),
-        };
+        let evidence = Evidence::from_iter([Measurement::Ring(
+            ring::Measurement::from_bytes(&bytes).expect("rings as they are stored"),
+        )]);
         (format!("{name}, unmarked"), evidence)
     });
     meshes.into_iter().chain(rings).collect()

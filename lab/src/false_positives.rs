@@ -5,9 +5,9 @@ use crate::crafted;
 use crate::models::Model;
 use crate::plot::{Axis, curves};
 use crate::seed::Seed;
-use meshmark::attack::{noise, quantize_evenly, simplify, smooth};
-use meshmark::carrier::{ring, solid};
-use meshmark::mesh::Mesh;
+use meshmark::internals::attack::{noise, quantize_evenly, simplify, smooth};
+use meshmark::internals::carrier::{Measurement, ring, solid};
+use meshmark::internals::mesh::Mesh;
 use meshmark::{Evidence, Strength, extract};
 use rayon::prelude::*;
 use std::f64::consts::LN_10;
@@ -159,10 +159,10 @@ fn measured(
     seed: &Seed,
 ) -> Result<Vec<(String, Evidence)>, String> {
     let measure = |(name, mesh): (String, Mesh)| {
-        let evidence = Evidence {
-            ring: ring::Measurement::new(&mesh),
-            solid: solid::Surfaces::new(&mesh).take(part.surfaces).collect(),
-        };
+        let evidence = Evidence::from_iter([
+            Measurement::Ring(ring::Measurement::new(&mesh)),
+            Measurement::Solid(solid::Surfaces::new(&mesh).take(part.surfaces).collect()),
+        ]);
         let evidence = if part.from_tables {
             evidence.for_many_keys()
         } else {

@@ -1,10 +1,10 @@
-//! The grid: every row of the tables, once. What attacks there are, and how strong, is in `meshmark::attack`; here is what needs
+//! The grid: every row of the tables, once. What attacks there are, and how strong, is in `meshmark::internals::attack`; here is what needs
 //! a key, and what is done one after another.
 
 use crate::case::{Case, gathered};
 use crate::real::Tool;
-use meshmark::attack::{CATALOGUE, Family, Step, average, chain, step, warp};
-use meshmark::mesh::Mesh;
+use meshmark::internals::attack::{CATALOGUE, Family, Step, average, chain, step, warp};
+use meshmark::internals::mesh::Mesh;
 use std::path::PathBuf;
 
 /// What a row is for.

@@ -239,8 +239,8 @@ fn write_with_plot(path: &Path, text: &str, name: &str, plot: &str) -> Result<()
 #[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 mod tests {
     use super::*;
-    use meshmark::mesh::shapes;
-    use meshmark::scene::to_glb;
+    use meshmark::internals::mesh::shapes;
+    use meshmark::internals::scene::to_glb;
 
     /// A row's name is what its random numbers are for.
     #[test]

@@ -1,8 +1,8 @@
 //! What is marked: generated shapes, and files where there are some.
 
 use glam::DVec3;
-use meshmark::mesh::{Edges, Mesh, shapes};
-use meshmark::scene::to_glb;
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::scene::to_glb;
 use std::path::{Path, PathBuf};
 
 /// What a model is like, and so which table it is in.

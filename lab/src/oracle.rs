@@ -4,10 +4,10 @@
 //! Suspects are lists of rings, one for each address: what RING measures of a fan of triangles whose tip is raised. SOLID sees nothing of them.
 
 use crate::seed::Seed;
-use meshmark::carrier::{ring, solid};
-use meshmark::code::{Checked, Codeword, Symbol};
-use meshmark::key::Prf;
-use meshmark::{Evidence, Extraction, Key, Payload, Verdict, extract, verify};
+use meshmark::internals::carrier::{Measurement, ring};
+use meshmark::internals::code::{Checked, Codeword, Symbol};
+use meshmark::internals::key::Prf;
+use meshmark::{Carrier, Evidence, Extraction, Key, Payload, Verdict, extract, verify};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -67,10 +67,9 @@ fn suspect(rings: &[Ring], lone: Option<u64>) -> Evidence {
         bytes
     };
     let bytes: Vec<u8> = rings.iter().flat_map(bytes).collect();
-    Evidence {
-        ring: ring::Measurement::from_bytes(&bytes).expect("rings as they are stored"),
-        solid: solid::Measurement::from_bytes(&[]).expect("no surface is evidence too"),
-    }
+    Evidence::from_iter([Measurement::Ring(
+        ring::Measurement::from_bytes(&bytes).expect("rings as they are stored"),
+    )])
 }
 
 /// A detector that answers anybody, and counts what it was asked.
@@ -122,7 +121,7 @@ impl Detector {
     fn owned(&self, num_rings: u64) -> Vec<Owned> {
         let read = |number, feature| {
             suspect(&[Ring { number, feature }], None)
-                .ring
+                .measurement(Carrier::Ring)
                 .read(&self.key)
         };
         let mut owned = Vec::new();

@@ -3,7 +3,7 @@
 //! `cargo xtask lab --real` installs them, with the scripts in `lab/real` that run what is no program by itself.
 
 use crate::case::gathered;
-use meshmark::mesh::Mesh;
+use meshmark::internals::mesh::Mesh;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -279,8 +279,8 @@ fn sides(mesh: &Mesh) -> [f64; 3] {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use meshmark::mesh::shapes;
-    use meshmark::scene::to_glb;
+    use meshmark::internals::mesh::shapes;
+    use meshmark::internals::scene::to_glb;
 
     #[test]
     fn rows_have_names_of_their_own_and_programs_versions() {

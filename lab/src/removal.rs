@@ -1,11 +1,11 @@
 //! The least of an attack that removes a mark, and what it costs.
 
 use crate::case::Case;
-use meshmark::attack::{noise, quantize, similarity, simplify, smooth_inside, warp};
-use meshmark::geometry::Quality;
-use meshmark::mesh::Mesh;
-use meshmark::scene::to_glb;
-use meshmark::{Files, Verdict, extract, ignore, measure};
+use meshmark::internals::attack::{noise, quantize, similarity, simplify, smooth_inside, warp};
+use meshmark::internals::geometry::Quality;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::to_glb;
+use meshmark::{Verdict, extract, measure};
 use serde::{Deserialize, Serialize};
 use std::iter::successors;
 
@@ -85,7 +85,7 @@ pub fn removal(case: &Case, means: &Means) -> Result<Removal, String> {
     let is_found = |place: usize| {
         let suspect = similarity(&attacked(place), seed);
         // A model without geometry is no copy any more.
-        measure(&to_glb(&suspect), &Files::new(), &mut ignore)
+        measure(&to_glb(&suspect))
             .is_ok_and(|evidence| extract(&evidence, &case.key).verdict == Verdict::Found)
     };
     let (mut found, mut removed) = (0, means.levels.len());

@@ -8,7 +8,7 @@ use crate::models::{Model, Size};
 use crate::removal::{Means, removal};
 use crate::seed::Seed;
 use meshmark::Strength;
-use meshmark::geometry::Quality;
+use meshmark::internals::geometry::Quality;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,29 +1,35 @@
 //! Where a mark's symbols live in geometry. Knows meshes and keys; knows nothing of files, attacks or verdicts.
 //!
-//! Every carrier offers the same three functions: `embed` finds the displacement that gives symbols the signs of a
-//! codeword, `measure` takes from a mesh all that needs no key, and `read` turns a measurement and a key into soft symbols,
-//! one list for each hypothesis that it declares in advance.
+//! [`Carrier`] is the door to all of them, for embedding and for reading: `embed` finds the displacement that gives symbols the
+//! signs of a codeword, `measure` takes from a mesh all that needs no key, and a [`Measurement`] and a key make soft symbols, one
+//! list for each hypothesis that was declared in advance. Nobody outside this room names a carrier by hand.
 
+mod error;
 pub mod osveta;
+mod reading;
 pub mod ring;
 pub mod solid;
 
-use crate::code::{Codeword, SoftSymbol};
-use crate::detection::Statistic;
+pub use error::{CarrierError, StoredError};
+pub(crate) use error::{possible, take};
+pub use reading::{Hypothesis, Reading};
+
+use crate::code::Codeword;
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
-use crate::progress::{Cancelled, Progress};
+use crate::progress::{Cancelled, Progress, ignore};
 use glam::DVec3;
 
-/// A carrier.
+/// A carrier: a place in geometry where a mark can live.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Carrier {
-    /// Flux through windows of a keyed lattice: see [`solid`].
+    /// In the shape, whatever its triangles are: flux through windows of a keyed lattice.
     Solid,
-    /// Offsets of vertices from their one-rings, addressed by connectivity: see [`ring`].
+    /// In how vertices are connected: their offsets from their one-rings.
     Ring,
 }
 
@@ -31,7 +37,14 @@ impl Carrier {
     /// Every carrier, in the order of embedding.
     pub const ALL: [Carrier; 2] = [Carrier::Solid, Carrier::Ring];
 
-    /// The name that scripts and pages use.
+    /// The same, in the order of measuring and of stored evidence: what takes little time comes first.
+    pub(crate) const QUICKEST_FIRST: [Carrier; 2] = [Carrier::Ring, Carrier::Solid];
+
+    /// The share of the RMS limit that a carrier may take on top of another one: RING's step is a fraction of an edge, so dense
+    /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
+    pub(crate) const SHARE_ON_TOP: f64 = 0.25;
+
+    /// The name that scripts and pages use: `solid` or `ring`.
     pub fn name(self) -> &'static str {
         match self {
             Carrier::Solid => "solid",
@@ -44,11 +57,8 @@ impl Carrier {
         Self::ALL.into_iter().find(|carrier| carrier.name() == name)
     }
 
-    /// The share of the RMS limit that RING may take on top of another carrier: its step is a fraction of an edge, so dense
-    /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
-    pub const SHARE_ON_TOP: f64 = 0.25;
-
     /// The displacement of all V vertices that gives the host the mark.
+    #[doc(hidden)]
     pub fn embed(
         self,
         host: &Host,
@@ -59,6 +69,145 @@ impl Carrier {
             Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
         }
+    }
+
+    /// What a mesh shows without a key.
+    pub(crate) fn measure(self, mesh: &Mesh) -> Measurement {
+        match self {
+            Carrier::Solid => Measurement::Solid(solid::Measurement::new(mesh)),
+            Carrier::Ring => Measurement::Ring(ring::Measurement::new(mesh)),
+        }
+    }
+
+    /// Measures and reads in one go, measuring no more than it takes to find a mark.
+    pub(crate) fn read(
+        self,
+        mesh: &Mesh,
+        key: &Key,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        match self {
+            Carrier::Solid => solid::Surfaces::new(mesh).read(key, progress),
+            Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
+        }
+    }
+
+    /// The same of a copy of a host that is at hand, with less patience: for nobody has turned it, and whether it was smoothed is known.
+    pub(crate) fn read_copy(
+        self,
+        copy: &Mesh,
+        host: &KnownHost,
+        is_smoothed: bool,
+        key: &Key,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        match self {
+            Carrier::Solid => {
+                let surfaces = solid::Surfaces::new(copy).facing(&host.0);
+                let surfaces = match is_smoothed {
+                    true => surfaces.first_kind(),
+                    false => surfaces.plain(),
+                };
+                surfaces.read(key, progress)
+            }
+            Carrier::Ring => self.read(copy, key, progress),
+        }
+    }
+
+    /// Distinct addresses that a mesh offers to an embedder.
+    pub(crate) fn num_addresses(self, mesh: &Mesh) -> usize {
+        match self {
+            Carrier::Solid => solid::num_windows(mesh),
+            Carrier::Ring => ring::num_addresses(mesh),
+        }
+    }
+
+    /// Distinct addresses that a mark of 48 bits needs.
+    pub(crate) fn needed_addresses(self) -> usize {
+        match self {
+            Carrier::Solid => solid::NEEDED_WINDOWS,
+            Carrier::Ring => ring::NEEDED_ADDRESSES,
+        }
+    }
+
+    /// The exponent that is to be hoped for where so many addresses can be read, whichever are a key's: a verdict must not say that.
+    pub(crate) fn most_exponent(self, num_addresses: usize) -> f64 {
+        match self {
+            // A surface is read at a pitch or not at all, which no key has a part in; one that is read has 680 squared pitches or
+            // more, and a window for each: some hundreds of nats, where a mark that can be found needs 70.
+            Carrier::Solid if num_addresses > 0 => f64::INFINITY,
+            Carrier::Solid => 0.0,
+            // A key owns a share of them, and n of equal weight that agree give ln p = -n.
+            Carrier::Ring => num_addresses as f64 / ring::SHARE as f64,
+        }
+    }
+
+    /// The tag of its section in stored evidence.
+    pub(crate) fn section(self) -> &'static [u8; 4] {
+        match self {
+            Carrier::Solid => b"SOLI",
+            Carrier::Ring => b"RING",
+        }
+    }
+
+    /// A measurement from its bytes; of none, one that shows nothing.
+    pub(crate) fn measurement_from(self, bytes: &[u8]) -> Result<Measurement, StoredError> {
+        Ok(match self {
+            Carrier::Solid => Measurement::Solid(solid::Measurement::from_bytes(bytes)?),
+            Carrier::Ring => Measurement::Ring(ring::Measurement::from_bytes(bytes)?),
+        })
+    }
+}
+
+/// What a carrier measures of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measurement {
+    /// SOLID's.
+    Solid(solid::Measurement),
+    /// RING's.
+    Ring(ring::Measurement),
+}
+
+impl Measurement {
+    /// Whose measurement it is.
+    pub fn carrier(&self) -> Carrier {
+        match self {
+            Measurement::Solid(_) => Carrier::Solid,
+            Measurement::Ring(_) => Carrier::Ring,
+        }
+    }
+
+    /// The soft symbols of a key.
+    pub fn read(&self, key: &Key) -> Reading {
+        match self {
+            Measurement::Solid(solid) => solid.read(key, &mut ignore).unwrap_or_default(),
+            Measurement::Ring(ring) => ring.read(key),
+        }
+    }
+
+    /// The same measurement, made ready for a list of keys: see [`solid::Measurement::for_many_keys`].
+    pub fn for_many_keys(self) -> Measurement {
+        match self {
+            Measurement::Solid(solid) => Measurement::Solid(solid.for_many_keys()),
+            ring => ring,
+        }
+    }
+
+    /// The measurement as bytes: the content of its section in stored evidence.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        match self {
+            Measurement::Solid(solid) => solid.to_bytes(),
+            Measurement::Ring(ring) => ring.to_bytes(),
+        }
+    }
+}
+
+/// An unmarked host that is at hand when its copies are read.
+pub(crate) struct KnownHost(solid::Surfaces);
+
+impl KnownHost {
+    pub(crate) fn new(host: &Mesh) -> KnownHost {
+        KnownHost(solid::Surfaces::new(host))
     }
 }
 
@@ -82,117 +231,4 @@ pub struct Mark<'a> {
     pub key: &'a Key,
     /// The encoded message.
     pub codeword: &'a Codeword,
-}
-
-/// How a key reads a measurement.
-#[derive(Default)]
-pub struct Reading {
-    /// The ways of reading that were followed, for the others had nothing to say.
-    pub hypotheses: Vec<Hypothesis>,
-    /// Distinct addresses that were there to be read, whoever's they are.
-    pub num_addresses: usize,
-}
-
-impl Reading {
-    /// The exponent of the bound for a codeword that is known, in the hypothesis that it fits best, before charges.
-    pub fn exponent(&self, codeword: &Codeword) -> f64 {
-        let fit = |hypothesis: &Hypothesis| {
-            let symbols = hypothesis.symbols.iter();
-            let signed = symbols.map(|soft| (soft.value * codeword.sign(soft.symbol), soft.weight));
-            -Statistic::new(signed).ln_p()
-        };
-        self.hypotheses.iter().map(fit).fold(0.0, f64::max)
-    }
-}
-
-/// One way of reading a measurement: its soft symbols.
-pub struct Hypothesis {
-    /// One for each address that is the key's.
-    pub symbols: Vec<SoftSymbol>,
-    /// What this way of reading is charged: the logarithm of the inverse of its share in the probability of a false alarm.
-    /// The shares of all ways that were declared before any key was known add up to 1 at most.
-    pub ln_num_tests: f64,
-}
-
-/// Why bytes are no measurement. Whoever sends evidence may have written it by hand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StoredError {
-    /// Cut short, or not such bytes at all.
-    Damaged,
-    /// Numbers that no surface gives, in words that follow "the evidence has".
-    Impossible(&'static str),
-}
-
-/// The first bytes of some, which are taken off.
-pub(crate) fn take<const N: usize>(bytes: &mut &[u8]) -> Result<[u8; N], StoredError> {
-    let (first, rest) = bytes.split_first_chunk().ok_or(StoredError::Damaged)?;
-    *bytes = rest;
-    Ok(*first)
-}
-
-/// Goes on only with what a surface can give.
-pub(crate) fn possible(is_possible: bool, otherwise: &'static str) -> Result<(), StoredError> {
-    if is_possible {
-        Ok(())
-    } else {
-        Err(StoredError::Impossible(otherwise))
-    }
-}
-
-/// Why a mark could not be embedded.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CarrierError {
-    /// The model is too small or too regular.
-    #[error(
-        "the model is too small or too regular for the {} carrier: its {vertices} vertices give {available} distinct places \
-         for symbols, and a mark of 48 bits needs {needed}",
-        carrier.name()
-    )]
-    TooFewAddresses {
-        /// The carrier that cannot be used.
-        carrier: Carrier,
-        /// Distinct addresses that a mark needs.
-        needed: usize,
-        /// Distinct addresses of the model.
-        available: usize,
-        /// Vertices of the model.
-        vertices: usize,
-    },
-    /// The model's shape is too poor: hardly any displacement within the limit moves what the carrier measures.
-    #[error(
-        "the {} carrier reaches an exponent of {reached:.0} in this model, and a mark of 48 bits needs {needed:.0}",
-        carrier.name()
-    )]
-    TooWeak {
-        /// The carrier that cannot be used.
-        carrier: Carrier,
-        /// The exponent that was reached, in nats.
-        reached: f64,
-        /// The exponent that a mark needs, in nats.
-        needed: f64,
-    },
-    /// Too few vertices for a code of fixed length.
-    #[error("the model has {available} vertices that can hold a text, and its code needs {needed}")]
-    TooFewHosts {
-        /// Vertices that the code needs.
-        needed: usize,
-        /// Vertices that there are.
-        available: usize,
-    },
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-impl CarrierError {
-    /// The stable code of this error.
-    pub fn code(&self) -> &'static str {
-        match self {
-            CarrierError::TooFewAddresses { .. } => "carrier.too-few-addresses",
-            CarrierError::TooWeak { .. } => "carrier.too-weak",
-            CarrierError::TooFewHosts { .. } => "carrier.too-few-hosts",
-            CarrierError::Cancelled(_) => "aborted",
-        }
-    }
 }

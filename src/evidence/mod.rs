@@ -3,13 +3,11 @@
 //! Stored form (docs/FORMAT.md): `MMEV`, a version of 2 bytes, then one section a carrier: a tag of 4 bytes, the length of
 //! its content in 4 bytes, the content. All integers little-endian.
 
-use crate::carrier::{StoredError, ring, solid};
+use crate::carrier::{Carrier, Measurement, StoredError};
 use crate::mesh::Mesh;
 
 const MAGIC: &[u8; 4] = b"MMEV";
 const VERSION: u16 = 1;
-const RING: &[u8; 4] = b"RING";
-const SOLID: &[u8; 4] = b"SOLI";
 
 /// Why bytes are not evidence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -55,41 +53,52 @@ impl EvidenceError {
 /// A key-free measurement of a suspect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
-    /// What RING measured.
-    pub ring: ring::Measurement,
-    /// What SOLID measured.
-    pub solid: solid::Measurement,
+    /// One of each carrier, in the order of [`Carrier::QUICKEST_FIRST`].
+    measurements: [Measurement; 2],
 }
 
 impl Evidence {
     /// Measures a mesh.
-    pub fn measure(mesh: &Mesh) -> Evidence {
+    #[doc(hidden)]
+    pub fn of_mesh(mesh: &Mesh) -> Evidence {
         Evidence {
-            ring: ring::Measurement::new(mesh),
-            solid: solid::Measurement::new(mesh),
+            measurements: Carrier::QUICKEST_FIRST.map(|carrier| carrier.measure(mesh)),
         }
     }
 
-    /// The same evidence, made ready for a list of keys: see [`solid::Measurement::for_many_keys`].
+    /// The same evidence, made ready for a list of keys.
+    #[doc(hidden)]
     pub fn for_many_keys(self) -> Evidence {
         Evidence {
-            solid: self.solid.for_many_keys(),
-            ..self
+            measurements: self.measurements.map(Measurement::for_many_keys),
         }
     }
 
-    /// The evidence as bytes.
+    /// What a carrier measured.
+    #[doc(hidden)]
+    pub fn measurement(&self, carrier: Carrier) -> &Measurement {
+        let is_its = |measurement: &&Measurement| measurement.carrier() == carrier;
+        let measurement = self.measurements.iter().find(is_its);
+        measurement.expect("there is one of each carrier")
+    }
+
+    /// The evidence as bytes: docs/FORMAT.md.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = [MAGIC.as_slice(), &VERSION.to_le_bytes()].concat();
-        for (tag, content) in [(RING, self.ring.to_bytes()), (SOLID, self.solid.to_bytes())] {
+        for measurement in &self.measurements {
+            let content = measurement.to_bytes();
             let length =
                 u32::try_from(content.len()).expect("some tens of bytes for each of 2^24 vertices");
-            bytes.extend([tag.as_slice(), &length.to_le_bytes(), &content].concat());
+            let tag = measurement.carrier().section().as_slice();
+            bytes.extend([tag, &length.to_le_bytes(), &content].concat());
         }
         bytes
     }
 
     /// Evidence from its bytes.
+    ///
+    /// # Errors
+    /// Any [`EvidenceError`]: where they are something else, of a later version, damaged, or hold numbers that no model gives.
     pub fn from_bytes(bytes: &[u8]) -> Result<Evidence, EvidenceError> {
         let bytes = bytes
             .strip_prefix(MAGIC)
@@ -99,14 +108,35 @@ impl Evidence {
             VERSION => {}
             other => return Err(EvidenceError::Version(other)),
         }
-        let (ring, bytes) = section(bytes, RING).ok_or(EvidenceError::Damaged)?;
-        let (solid, rest) = section(bytes, SOLID).ok_or(EvidenceError::Damaged)?;
-        let ring = ring::Measurement::from_bytes(ring)?;
-        let solid = solid::Measurement::from_bytes(solid)?;
-        if rest.is_empty() {
-            Ok(Evidence { ring, solid })
-        } else {
-            Err(EvidenceError::Damaged)
+        let mut rest = bytes;
+        let mut measurements = Vec::new();
+        for carrier in Carrier::QUICKEST_FIRST {
+            let content;
+            (content, rest) = section(rest, carrier.section()).ok_or(EvidenceError::Damaged)?;
+            measurements.push(carrier.measurement_from(content)?);
+        }
+        match measurements.try_into() {
+            Ok(measurements) if rest.is_empty() => Ok(Evidence { measurements }),
+            _ => Err(EvidenceError::Damaged),
+        }
+    }
+}
+
+/// Some carriers' measurements make evidence too: that of the others shows nothing.
+#[doc(hidden)]
+impl FromIterator<Measurement> for Evidence {
+    fn from_iter<I: IntoIterator<Item = Measurement>>(measurements: I) -> Evidence {
+        let mut given: Vec<Measurement> = measurements.into_iter().collect();
+        let take = |carrier: Carrier| {
+            let place = given.iter().position(|m| m.carrier() == carrier);
+            let given = place.map(|place| given.swap_remove(place));
+            given.unwrap_or_else(|| {
+                let nothing = carrier.measurement_from(&[]);
+                nothing.expect("no bytes are a measurement that shows nothing")
+            })
+        };
+        Evidence {
+            measurements: Carrier::QUICKEST_FIRST.map(take),
         }
     }
 }

@@ -62,6 +62,9 @@ impl Key {
     pub const BYTES: usize = 32;
 
     /// A key from a key file's bytes: exactly 32, taken as they are.
+    ///
+    /// # Errors
+    /// [`KeyError::Length`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Key, KeyError> {
         bytes
             .try_into()
@@ -73,8 +76,22 @@ impl Key {
     ///
     /// Both are brought to Unicode NFKC first, and white space around the name is dropped, so that the same words typed
     /// on another keyboard give the same key. Upper and lower case are different. Takes tenths of a second, by design.
+    ///
+    /// # Errors
+    /// Where the name or the passphrase is empty, or 19 MiB of memory cannot be had.
+    #[cfg(feature = "nfkc")]
     pub fn from_passphrase(owner: &str, passphrase: &str) -> Result<Key, KeyError> {
-        let (owner, passphrase) = (nfkc(owner), nfkc(passphrase));
+        use unicode_normalization::UnicodeNormalization;
+        let nfkc = |text: &str| Zeroizing::new(text.nfkc().collect::<String>());
+        Key::from_normalized(&nfkc(owner), &nfkc(passphrase))
+    }
+
+    /// The same for a name and a passphrase that are in Unicode NFKC already. Of others it makes other keys: it is for callers who
+    /// have a normalizer of their own, as JavaScript has.
+    ///
+    /// # Errors
+    /// As [`from_passphrase`](Self::from_passphrase).
+    pub fn from_normalized(owner: &str, passphrase: &str) -> Result<Key, KeyError> {
         if owner.trim().is_empty() {
             return Err(KeyError::EmptyOwner);
         }
@@ -110,20 +127,6 @@ impl Key {
             .expect("16 bytes are fewer than HKDF's limit of 255 hashes");
         Prf(sub_key)
     }
-}
-
-/// Unicode normalization form KC.
-#[cfg(not(target_arch = "wasm32"))]
-fn nfkc(text: &str) -> Zeroizing<String> {
-    use unicode_normalization::UnicodeNormalization;
-    Zeroizing::new(text.nfkc().collect())
-}
-
-/// In wasm the JavaScript engine's own tables normalize, before the text gets here (see `src/wasm`): a second copy of them
-/// would be a quarter of the module.
-#[cfg(target_arch = "wasm32")]
-fn nfkc(text: &str) -> Zeroizing<String> {
-    Zeroizing::new(text.to_owned())
 }
 
 /// A keyed pseudo-random function from a 64-bit address to 128 bits: SipHash-2-4-128 (Aumasson and Bernstein 2012).

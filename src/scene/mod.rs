@@ -58,8 +58,8 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
-    /// More than [`MAX_TRIANGLES`], [`MAX_ELEMENTS`], [`MAX_PARTS`] or
-    /// [`MAX_UNBACKED`](crate::document::MAX_UNBACKED), every instance counted.
+    /// More than 2^24 triangles or vertices (2^22 in a browser tab), 2^20 parts (2^18 there), or 2^20 vertices that no bytes of the
+    /// file stand behind; every instance counted.
     #[error(
         "the scene has {value} {what}, every instance counted, and the limit is {limit}: {advice}"
     )]

@@ -1,7 +1,7 @@
 //! Embedding: read, displace, write, and read the result back as any detector would.
 
 use super::forecast::forecast;
-use super::{EmbedOptions, EmbedReport, Error, Verdict, detect};
+use super::{EmbedOptions, EmbedReport, Error, Model, Verdict, detect};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
@@ -10,12 +10,13 @@ use crate::document::{Document, Files, Written};
 use crate::geometry::{Distortion, diagonal};
 use crate::key::Key;
 use crate::mesh::Mesh;
-use crate::progress::{Progress, Stage, step};
+use crate::progress::Stage;
 use crate::scene::Scene;
 use glam::DVec3;
 
 /// A marked model.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Embedding {
     /// The main file: as the host's, but for positions and the bounds of their accessors.
     pub model: Vec<u8>,
@@ -29,15 +30,25 @@ pub struct Embedding {
 ///
 /// A carrier that the model is too small or too regular for is left out, if another can be used.
 ///
-/// `model` is a `.glb`, or a `.gltf` whose external buffers are in `files` by URI. The marked bytes are read back and
-/// tested before they are returned: a mark that cannot be found is [`Error::Unreadable`], and nothing is returned.
-pub fn embed(
-    model: &[u8],
-    files: &Files,
+/// The marked bytes are read back and tested before they are returned.
+///
+/// # Errors
+/// Where the model cannot be read or no carrier can be used; [`Error::Unreadable`] where the mark cannot be found again in the marked
+/// bytes; [`Error::Cancelled`] where its progress was told to stop. Nothing is returned then.
+pub fn embed<'a>(
+    model: impl Into<Model<'a>>,
     payload: Payload,
     key: &Key,
     options: &EmbedOptions,
-    progress: &mut dyn Progress,
+) -> Result<Embedding, Error> {
+    embed_in(model.into(), payload, key, options)
+}
+
+fn embed_in(
+    mut model: Model,
+    payload: Payload,
+    key: &Key,
+    options: &EmbedOptions,
 ) -> Result<Embedding, Error> {
     if options.carriers.is_empty() {
         return Err(Error::NoCarrier);
@@ -46,11 +57,12 @@ pub fn embed(
         host,
         marked,
         written,
-    } = mark(model, files, payload, key, options, progress)?;
+    } = mark(&mut model, payload, key, options)?;
     let distortion = Distortion::between(&host.positions, &marked.positions);
-    let mut marked_files = files.clone();
+    let mut marked_files = model.files.clone();
     marked_files.extend(written.files.clone());
-    let read_back = detect(&written.model, &marked_files, key, None, progress)?;
+    let copy = Model::new(&written.model).with_files(&marked_files);
+    let read_back = detect(copy.with_progress(&mut model), key, None)?;
     if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
         let addresses = read_back
             .details()
@@ -60,7 +72,7 @@ pub fn embed(
             .sum();
         return Err(Error::Unreadable { addresses });
     }
-    let forecast = forecast(&host, &marked, &read_back, key, payload, progress)?;
+    let forecast = forecast(&host, &marked, &read_back, key, payload, &mut model)?;
     let report = EmbedReport {
         tag: payload.tag(),
         number: payload.number(),
@@ -72,7 +84,7 @@ pub fn embed(
         strength: options.strength.rms_rel(),
         read_back,
         forecast,
-        host_sha256: sha256(model),
+        host_sha256: sha256(model.bytes),
         marked_sha256: sha256(&written.model),
     };
     Ok(Embedding {
@@ -91,17 +103,15 @@ struct Marked {
 
 /// Reads, displaces and writes.
 fn mark(
-    model: &[u8],
-    files: &Files,
+    model: &mut Model,
     payload: Payload,
     key: &Key,
     options: &EmbedOptions,
-    progress: &mut dyn Progress,
 ) -> Result<Marked, Error> {
-    step(progress, Stage::Read, 0.0)?;
-    let mut document = Document::read(model, files)?;
+    model.step(Stage::Read, 0.0)?;
+    let mut document = Document::read(model.bytes, model.files)?;
     let scene = Scene::gather(&document)?;
-    step(progress, Stage::Embed, 0.0)?;
+    model.step(Stage::Embed, 0.0)?;
 
     let codeword = Codeword::new(Checked::new(key).message(payload));
     let mark = Mark {
@@ -131,7 +141,7 @@ fn mark(
             hidden: options.strength.is_hidden(),
             on_top: !is_first,
         };
-        match carrier.embed(&host, &mark, progress) {
+        match carrier.embed(&host, &mark, model) {
             Ok(displacement) => mesh
                 .positions
                 .iter_mut()
@@ -145,7 +155,7 @@ fn mark(
         return Err(refusals.pop().map_or(Error::NoCarrier, Error::Carrier));
     }
 
-    step(progress, Stage::Write, 0.0)?;
+    model.step(Stage::Write, 0.0)?;
     // Each carrier keeps to a limit of its own: together they exceed the whole's by a few percent, which quantizers do not
     // notice.
     let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
@@ -162,7 +172,7 @@ fn mark(
     let written = document.write()?;
     drop(document);
     let marked = host.with_positions(positions);
-    step(progress, Stage::Write, 1.0)?;
+    model.step(Stage::Write, 1.0)?;
     Ok(Marked {
         host,
         marked,

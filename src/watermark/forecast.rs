@@ -1,10 +1,10 @@
 //! What a mark is likely to survive: tried on the marked model itself.
 
-use super::extract::Reader;
+use super::judge::Judge;
 use super::{Extraction, Input, Verdict};
 use crate::attack::{crop, noise, quantize_evenly, simplify_on, smooth};
 use crate::bits::Payload;
-use crate::carrier::{Reading, ring, solid};
+use crate::carrier::{Carrier, KnownHost};
 use crate::detection::LN_P_FOUND;
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -14,6 +14,7 @@ use serde::Serialize;
 /// How a mark is likely to stand an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Level {
     /// It is found with a wide margin: twice the exponent that is needed.
     Green,
@@ -26,8 +27,9 @@ pub enum Level {
 /// One attack, and what was left of the mark after it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct Forecast {
-    /// Which attack: a name of [`forecast`]'s list.
+    /// Which attack: `none`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-70` or `crop`.
     pub attack: &'static str,
     /// What is likely.
     pub level: Level,
@@ -59,8 +61,8 @@ pub(super) fn forecast(
     payload: Payload,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Forecast>, Cancelled> {
-    let host = solid::Surfaces::new(host);
-    let reader = Reader::new(key, None, Input::Model);
+    let host = KnownHost::new(host);
+    let judge = Judge::new(key, None, Input::Model);
     let forecast = |attack, found: &Extraction| Forecast {
         attack,
         level: level(found, payload),
@@ -72,17 +74,18 @@ pub(super) fn forecast(
         for (&name, suspect) in names.iter().zip(attack(marked)) {
             let done = (forecasts.len() - 1) as f64 / num_names as f64;
             step(progress, Stage::Forecast, done)?;
-            let surfaces = solid::Surfaces::new(&suspect).facing(&host);
-            let surfaces = if name == "smooth" {
-                surfaces.first_kind()
-            } else {
-                surfaces.plain()
-            };
             let mut report = |_, _| progress.report(Stage::Forecast, done);
-            let solid = surfaces.read(key, &mut report)?;
-            let mut found = reader.conclude(&solid, &Reading::default());
-            if level(&found, payload) != Level::Green {
-                found = reader.conclude(&solid, &ring::Measurement::new(&suspect).read(key));
+            let is_smoothed = name == "smooth";
+            // Mostly the first carrier says all: the others are asked only where it does not.
+            let mut readings = Carrier::ALL.map(|_| Default::default());
+            let mut found = judge.conclude(&readings);
+            for carrier in Carrier::ALL {
+                let reading = carrier.read_copy(&suspect, &host, is_smoothed, key, &mut report)?;
+                readings[carrier as usize] = reading;
+                found = judge.conclude(&readings);
+                if level(&found, payload) == Level::Green {
+                    break;
+                }
             }
             forecasts.push(forecast(name, &found));
         }

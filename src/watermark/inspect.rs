@@ -1,17 +1,19 @@
 //! What a model is made of, and what it could hold.
 
-use super::Error;
-use crate::carrier::{Carrier, ring, solid};
+use super::{Error, Model};
+use crate::carrier::Carrier;
 use crate::digest::sha256;
-use crate::document::{Container, Document, Files};
+use crate::document::{Container, Document};
 use crate::geometry::diagonal;
 use crate::mesh::Edges;
+use crate::progress::Stage;
 use crate::scene::Scene;
 use serde::Serialize;
 
 /// A model in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct Inspection {
     /// `glb` or `gltf`.
     pub container: &'static str,
@@ -46,6 +48,7 @@ pub struct Inspection {
 /// What one carrier could hold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct CarrierCapacity {
     /// Which carrier.
     pub name: Carrier,
@@ -56,16 +59,27 @@ pub struct CarrierCapacity {
 }
 
 /// Describes a model.
-pub fn inspect(model: &[u8], files: &Files) -> Result<Inspection, Error> {
-    let document = Document::read(model, files)?;
+///
+/// # Errors
+/// As [`measure`](crate::measure).
+pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
+    let mut model = model.into();
+    model.step(Stage::Read, 0.0)?;
+    let document = Document::read(model.bytes, model.files)?;
     let mesh = Scene::gather(&document)?.mesh;
+    model.step(Stage::Measure, 0.0)?;
+    let capacity = |carrier: Carrier| CarrierCapacity {
+        name: carrier,
+        addresses: carrier.num_addresses(&mesh),
+        needed_addresses: carrier.needed_addresses(),
+    };
     let edges = Edges::new(&mesh);
     Ok(Inspection {
         container: match document.container() {
             Container::Glb => "glb",
             Container::Gltf => "gltf",
         },
-        bytes: model.len(),
+        bytes: model.bytes.len(),
         vertices: mesh.positions.len(),
         triangles: mesh.triangles.len(),
         components: edges.num_components(),
@@ -80,18 +94,7 @@ pub fn inspect(model: &[u8], files: &Files) -> Result<Inspection, Error> {
             .sum(),
         nodes: document.nodes().len(),
         extensions_used: document.extensions_used().to_vec(),
-        capacity: vec![
-            CarrierCapacity {
-                name: Carrier::Solid,
-                addresses: solid::num_windows(&mesh),
-                needed_addresses: solid::NEEDED_WINDOWS,
-            },
-            CarrierCapacity {
-                name: Carrier::Ring,
-                addresses: ring::num_addresses(&mesh),
-                needed_addresses: ring::NEEDED_ADDRESSES,
-            },
-        ],
-        sha256: sha256(model),
+        capacity: Carrier::ALL.into_iter().map(capacity).collect(),
+        sha256: sha256(model.bytes),
     })
 }

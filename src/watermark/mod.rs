@@ -5,7 +5,9 @@ mod error;
 mod extract;
 mod forecast;
 mod inspect;
-pub mod note;
+mod judge;
+mod model;
+mod note;
 mod options;
 mod report;
 
@@ -14,5 +16,9 @@ pub use error::Error;
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use forecast::{Forecast, Level};
 pub use inspect::{CarrierCapacity, Inspection, inspect};
+pub use model::{Model, file_names};
+pub use note::{
+    NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
+};
 pub use options::{EmbedOptions, Strength};
 pub use report::{CarrierReading, Details, EmbedReport, Extraction, Input, Verdict};

@@ -1,6 +1,6 @@
 //! Notes: a text in the distances of all vertices from the centroid, beside the mark or without one. Read with the key alone.
 
-use super::{Error, Verdict};
+use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
 use crate::carrier::osveta::{Cells, cells};
 use crate::code::{Block, TextCheck, TextError};
@@ -10,7 +10,7 @@ use crate::document::{Document, Files};
 use crate::geometry::Distortion;
 use crate::key::Key;
 use crate::mesh::Mesh;
-use crate::progress::{Progress, Stage, step};
+use crate::progress::Stage;
 use crate::scene::Scene;
 use serde::Serialize;
 use std::f64::consts::LN_2;
@@ -20,6 +20,7 @@ const STEP: f64 = 0.0125;
 
 /// A model with a note.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct NoteEmbedding {
     /// The main file: as the host's, but for positions and the bounds of their accessors.
     pub model: Vec<u8>,
@@ -32,6 +33,7 @@ pub struct NoteEmbedding {
 /// How much a note holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct NoteSize {
     /// Bits of UTF-8.
     pub bits: usize,
@@ -42,6 +44,7 @@ pub struct NoteSize {
 /// What the embedding of a note did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct NoteReport {
     /// The note.
     pub text: String,
@@ -70,6 +73,7 @@ pub struct NoteReport {
 /// The answer to "does this model carry a note of this key?".
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct NoteReading {
     /// `found`, `none`, or `cannot-check` for a model with too few vertices.
     pub verdict: Verdict,
@@ -84,21 +88,24 @@ pub struct NoteReading {
     pub agreement: f64,
 }
 
-/// Writes a text into a model under a key: 1 to 29 bytes of UTF-8, as [`capacity`] allows.
+/// Writes a text into a model under a key: 1 to 29 bytes of UTF-8, as [`note_capacity`] allows.
 ///
-/// `model` and `files` are as for [`embed`](crate::embed). The bytes are read back and tested before they are returned. A mark
-/// may go on top, and should go after the note: RING's symbols do not stand a note's displacement, which is larger.
-pub fn embed(
-    model: &[u8],
-    files: &Files,
+/// The bytes are read back and tested before they are returned. A mark may go on top, and should go after the note: RING's symbols do
+/// not stand a note's displacement, which is larger.
+///
+/// # Errors
+/// Where the model cannot be read, or the text is longer than the model can hold; [`Error::NoteUnreadable`] where the note cannot be
+/// found again; [`Error::Cancelled`] where its progress was told to stop. Nothing is returned then.
+pub fn embed_note<'a>(
+    model: impl Into<Model<'a>>,
     text: &str,
     key: &Key,
-    progress: &mut dyn Progress,
 ) -> Result<NoteEmbedding, Error> {
+    let mut model = model.into();
     let block = Block::for_text(text)?;
     let message = TextCheck::new(key).message(text, block)?;
-    step(progress, Stage::Read, 0.0)?;
-    let mut document = Document::read(model, files)?;
+    model.step(Stage::Read, 0.0)?;
+    let mut document = Document::read(model.bytes, model.files)?;
     let scene = Scene::gather(&document)?;
     let room = room(&scene)?;
     if room < block {
@@ -107,19 +114,20 @@ pub fn embed(
             capacity: room.text_bytes(),
         }));
     }
-    step(progress, Stage::Embed, 0.0)?;
+    model.step(Stage::Embed, 0.0)?;
     let mut displacement = Cells::new(key, block, STEP).embed(&scene.mesh, &message)?;
     scene.admissible.project(&mut displacement);
-    step(progress, Stage::Write, 0.0)?;
+    model.step(Stage::Write, 0.0)?;
     scene.scatter(&mut document, &displacement)?;
     let marked = scene.mesh.with_positions(scene.positions_in(&document)?);
     let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);
     let written = document.write()?;
-    step(progress, Stage::Write, 1.0)?;
+    model.step(Stage::Write, 1.0)?;
 
-    let mut marked_files = files.clone();
+    let mut marked_files = model.files.clone();
     marked_files.extend(written.files.clone());
-    let read_back = read(&written.model, &marked_files, key, progress)?;
+    let copy = Model::new(&written.model).with_files(&marked_files);
+    let read_back = read_note(copy.with_progress(&mut model), key)?;
     if read_back.text.as_deref() != Some(text) {
         return Err(Error::NoteUnreadable);
     }
@@ -134,7 +142,7 @@ pub fn embed(
             rms_rel: distortion.rms_rel,
             max_rel: distortion.max_rel,
             read_back,
-            host_sha256: sha256(model),
+            host_sha256: sha256(model.bytes),
             marked_sha256: sha256(&written.model),
         },
         model: written.model,
@@ -143,34 +151,33 @@ pub fn embed(
 }
 
 /// How long a note a model can hold.
-pub fn capacity(model: &[u8], files: &Files) -> Result<NoteSize, Error> {
-    let scene = Scene::gather(&Document::read(model, files)?)?;
+///
+/// # Errors
+/// Where the model cannot be read, or is too small for any note.
+pub fn note_capacity<'a>(model: impl Into<Model<'a>>) -> Result<NoteSize, Error> {
+    let model = model.into();
+    let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
     Ok(NoteSize::room(room(&scene)?))
 }
 
 /// Reads the note of a key, with nothing else known.
-pub fn read(
-    model: &[u8],
-    files: &Files,
-    key: &Key,
-    progress: &mut dyn Progress,
-) -> Result<NoteReading, Error> {
-    step(progress, Stage::Read, 0.0)?;
-    let mesh = Scene::gather(&Document::read(model, files)?)?.mesh;
+///
+/// # Errors
+/// As [`measure`](crate::measure).
+pub fn read_note<'a>(model: impl Into<Model<'a>>, key: &Key) -> Result<NoteReading, Error> {
+    let mut model = model.into();
+    model.step(Stage::Read, 0.0)?;
+    let mesh = Scene::gather(&Document::read(model.bytes, model.files)?)?.mesh;
     let mut best = NoteReading::none(Cells::capacity(mesh.positions.len()));
     for (number, block) in Block::ALL.into_iter().enumerate() {
-        step(
-            progress,
-            Stage::Test,
-            number as f64 / Block::ALL.len() as f64,
-        )?;
+        model.step(Stage::Test, number as f64 / Block::ALL.len() as f64)?;
         for found in notes(&mesh, key, block) {
             if found.ln_p < best.ln_p.min(LN_P_FOUND) {
                 best = found;
             }
         }
     }
-    step(progress, Stage::Test, 1.0)?;
+    model.step(Stage::Test, 1.0)?;
     Ok(best)
 }
 

@@ -5,6 +5,7 @@ use crate::carrier::Carrier;
 
 /// Options of [`embed`](super::embed).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EmbedOptions {
     /// Default: [`Strength::BALANCED`].
     pub strength: Strength,
@@ -17,6 +18,21 @@ impl Default for EmbedOptions {
         EmbedOptions {
             strength: Strength::BALANCED,
             carriers: Carrier::ALL.to_vec(),
+        }
+    }
+}
+
+impl EmbedOptions {
+    /// The same with a strength.
+    pub fn with_strength(self, strength: Strength) -> EmbedOptions {
+        EmbedOptions { strength, ..self }
+    }
+
+    /// The same with these carriers alone.
+    pub fn with_carriers(self, carriers: impl IntoIterator<Item = Carrier>) -> EmbedOptions {
+        EmbedOptions {
+            carriers: carriers.into_iter().collect(),
+            ..self
         }
     }
 }
@@ -52,6 +68,9 @@ impl Strength {
     }
 
     /// A strength from 0.00001 to 0.01, spent whole whether it is seen or not.
+    ///
+    /// # Errors
+    /// [`Error::Strength`] for any other number.
     pub fn new(rms_rel: f64) -> Result<Strength, Error> {
         if (1e-5..=1e-2).contains(&rms_rel) {
             Ok(Strength::whole(rms_rel))
@@ -85,6 +104,9 @@ impl std::str::FromStr for Strength {
     type Err = Error;
 
     /// A preset's name or a number.
+    ///
+    /// # Errors
+    /// [`Error::Strength`] for anything else.
     fn from_str(text: &str) -> Result<Strength, Error> {
         match Strength::from_name(text) {
             Some(preset) => Ok(preset),

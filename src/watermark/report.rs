@@ -8,6 +8,7 @@ use serde::{Serialize, Serializer};
 /// The answer to "does this model carry this key's mark?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Verdict {
     /// A payload was read, and the chance of that without the key is at most 1e-9.
     Found,
@@ -36,6 +37,7 @@ impl Verdict {
 /// What one carrier says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct CarrierReading {
     /// Which carrier.
     pub name: Carrier,
@@ -56,6 +58,7 @@ pub struct CarrierReading {
 /// What was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Input {
     /// A model, measured here.
     Model,
@@ -69,6 +72,7 @@ pub enum Input {
 /// [`details`](Self::details): as JSON it is there where the verdict is found, else only after [`with_details`](Self::with_details).
 /// `Debug` prints it always.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Extraction {
     /// The answer.
     pub verdict: Verdict,
@@ -88,6 +92,7 @@ pub struct Extraction {
 
 /// What follows the key in a reading.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Details {
     /// Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0.
     pub ln_p: f64,
@@ -136,6 +141,7 @@ impl Serialize for Extraction {
 /// What an embedding did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
+#[non_exhaustive]
 pub struct EmbedReport {
     /// The payload as a tag; `None` for the one number that has none.
     pub tag: Option<String>,

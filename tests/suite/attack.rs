@@ -2,13 +2,13 @@
 
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
-use meshmark::attack::{
+use meshmark::internals::attack::{
     CATALOGUE, average, catmull_clark, crop, loop_scheme, midpoint, noise, quantize, remesh,
     reorder, resample, similarity, simplify, simplify_volume, smooth, smooth_inside, sqrt3, step,
     taubin, warp,
 };
-use meshmark::geometry::{Distortion, Surface, diagonal};
-use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::geometry::{Distortion, Surface, diagonal};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn volume(mesh: &Mesh) -> f64 {

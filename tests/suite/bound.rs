@@ -2,13 +2,14 @@
 //! suspect could swallow one. Every test of every way of reading is held against its own bound, at every decade.
 
 use glam::DVec3;
-use meshmark::carrier::osveta::Cells;
-use meshmark::carrier::osveta::cells::NUM_TESTS;
-use meshmark::carrier::{Reading, ring, solid};
-use meshmark::code::{Block, Checked, Codeword, SoftSymbol, Symbol};
-use meshmark::detection::{Statistic, union};
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::{Evidence, Key, Payload, extract, ignore, verify};
+use meshmark::internals::carrier::osveta::Cells;
+use meshmark::internals::carrier::osveta::cells::NUM_TESTS;
+use meshmark::internals::carrier::{Measurement, Reading, ring, solid};
+use meshmark::internals::code::{Block, Checked, Codeword, SoftSymbol, Symbol};
+use meshmark::internals::detection::{Statistic, union};
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::progress::ignore;
+use meshmark::{Evidence, Key, Payload, extract, verify};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::f64::consts::LN_10;
@@ -366,10 +367,9 @@ fn reported_bounds_hold_for_ten_thousand_keys() {
             )
         })
         .collect();
-    let evidence = Evidence {
-        ring: ring::Measurement::from_bytes(&rings).unwrap(),
-        solid: solid::Measurement::from_bytes(&[]).unwrap(),
-    };
+    let evidence = Evidence::from_iter([Measurement::Ring(
+        ring::Measurement::from_bytes(&rings).unwrap(),
+    )]);
     let expected = Payload::from_number(99).unwrap();
     let [mut blind, mut informed] = [Tail::default(), Tail::default()];
     for number in 0..10_000 {

@@ -2,15 +2,15 @@
 
 use crate::support::fixtures::{asteroid, key};
 use glam::DVec3;
-use meshmark::attack::{catmull_clark, noise, reorder, similarity, simplify};
-use meshmark::carrier::osveta::{
+use meshmark::internals::attack::{catmull_clark, noise, reorder, similarity, simplify};
+use meshmark::internals::carrier::osveta::{
     Barycentre, Cells, Chain, Embedded, Ranking, SparseQim, Spherical, cells, quantize, rank,
 };
-use meshmark::code::run_length::{self, Channel};
-use meshmark::code::{Block, TextCheck, TextError};
-use meshmark::detection::{LN_P_FOUND, union};
-use meshmark::geometry::Distortion;
-use meshmark::mesh::{Mesh, shapes};
+use meshmark::internals::code::run_length::{self, Channel};
+use meshmark::internals::code::{Block, TextCheck, TextError};
+use meshmark::internals::detection::{LN_P_FOUND, union};
+use meshmark::internals::geometry::Distortion;
+use meshmark::internals::mesh::{Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const CLEAN: Channel = Channel {

@@ -2,7 +2,9 @@
 
 use crate::support::fixtures::key;
 use meshmark::Payload;
-use meshmark::code::{CHECK_BITS, Checked, Codeword, MESSAGE_BITS, SoftSymbol, Symbol, decode};
+use meshmark::internals::code::{
+    CHECK_BITS, Checked, Codeword, MESSAGE_BITS, SoftSymbol, Symbol, decode,
+};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0a5_c3f0_1234_5678;

@@ -1,11 +1,11 @@
 //! Curvature against what is known exactly.
 
 use glam::DVec3;
-use meshmark::geometry::{
+use meshmark::internals::geometry::{
     Curvature, collapse_costs, curvature_integrals, dihedrals, face_areas, fitted_curvature,
     normal_deviations, vertex_normals,
 };
-use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use wasm_bindgen_test::wasm_bindgen_test;
 

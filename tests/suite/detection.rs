@@ -1,7 +1,7 @@
 //! The bound: what it is, that it holds, and that it survives extreme numbers.
 
 use crate::support::fixtures::key;
-use meshmark::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
+use meshmark::internals::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
 use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -6,13 +6,13 @@ use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn evidence_is_its_bytes() {
-    let evidence = Evidence::measure(&asteroid());
+    let evidence = Evidence::of_mesh(&asteroid());
     assert_eq!(Evidence::from_bytes(&evidence.to_bytes()), Ok(evidence));
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn evidence_refuses_what_is_none_by_name() {
-    let bytes = Evidence::measure(&asteroid()).to_bytes();
+    let bytes = Evidence::of_mesh(&asteroid()).to_bytes();
     let with = |offset: usize, value: u8| {
         let mut bytes = bytes.clone();
         bytes[offset] = value;

@@ -6,11 +6,11 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use crate::support::fixtures::{key, marked, payload};
-use meshmark::attack::{CATALOGUE, Step, chain, step};
-use meshmark::document::Document;
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::scene::{Scene, to_glb};
-use meshmark::{Files, Verdict, extract, ignore, measure};
+use meshmark::internals::attack::{CATALOGUE, Step, chain, step};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{Verdict, extract, measure};
 
 const FLOORS: &str = include_str!("floors.txt");
 
@@ -57,7 +57,7 @@ fn hold(name: &str, mesh: &Mesh) {
                 return None;
             }
             let suspect = to_glb(&chain(&marked, &steps, 11));
-            let evidence = measure(&suspect, &Files::new(), &mut ignore).unwrap();
+            let evidence = measure(&suspect).unwrap();
             let answer = extract(&evidence, &key(1));
             let is_read =
                 answer.verdict == Verdict::Found && answer.number == Some(payload().number());

@@ -1,11 +1,11 @@
 //! Normals and distortion against what is known exactly.
 
 use glam::{DMat3, DVec3};
-use meshmark::geometry::spectral::{self, InverseFilter};
-use meshmark::geometry::{
+use meshmark::internals::geometry::spectral::{self, InverseFilter};
+use meshmark::internals::geometry::{
     Distortion, Pose, Quadrature, Sample, diagonal, outward, refined, roughness, vertex_normals,
 };
-use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -83,7 +83,7 @@ fn geometry_pose_of_a_rectangle_is_exact() {
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_pose_goes_along_with_the_surface() {
     let knot = shapes::torus_knot(60, 12);
-    let moved = meshmark::attack::similarity(&knot, 9);
+    let moved = meshmark::internals::attack::similarity(&knot, 9);
     let (a, b) = (Pose::of(&knot).unwrap(), Pose::of(&moved).unwrap());
     assert!(a.spreads.distance(b.spreads) < 1e-12);
     let signs: Vec<DVec3> = (0..9)
@@ -230,7 +230,7 @@ fn geometry_samples_are_exact_to_the_first_order() {
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_inverse_filter_undoes_smoothing() {
     let knot = shapes::torus_knot(80, 16);
-    let smoothed = meshmark::attack::smooth(&knot, 0.1, 10);
+    let smoothed = meshmark::internals::attack::smooth(&knot, 0.1, 10);
     let filter = InverseFilter {
         steps: 10.0,
         step: spectral::laplacian,
@@ -256,7 +256,7 @@ fn geometry_roughness_tells_flat_from_rough() {
         .iter_mut()
         .filter(|p| p.x < 0.5)
         .for_each(|p| p.z = 0.0);
-    let rough = meshmark::attack::noise(&half_rough, 0.02, 3);
+    let rough = meshmark::internals::attack::noise(&half_rough, 0.02, 3);
     half_rough
         .positions
         .iter_mut()
@@ -282,7 +282,7 @@ fn geometry_roughness_tells_flat_from_rough() {
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_roughness_ends_at_creases() {
     let mut block = shapes::cuboid(DVec3::new(1.0, 1.0, 1.0), [12, 12, 12]);
-    let rough = meshmark::attack::noise(&block, 0.01, 3);
+    let rough = meshmark::internals::attack::noise(&block, 0.01, 3);
     for (p, q) in block.positions.iter_mut().zip(&rough.positions) {
         if p.z > 0.49 && p.x.abs().max(p.y.abs()) < 0.49 {
             *p = *q;

@@ -1,28 +1,23 @@
 //! Golden marks: the same bytes natively and in wasm, today and after every change that is not a new format.
 
 use crate::support::fixtures::{gallery, key, payload};
-use crate::support::gltf_builder::{Model, Packing};
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::scene::to_glb;
-use meshmark::{EmbedOptions, Files, Strength, embed, ignore, measure};
+use crate::support::gltf_builder::{Built, Packing};
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::to_glb;
+use meshmark::{EmbedOptions, Files, Model, Strength, embed, measure};
 use sha2::{Digest, Sha256};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-fn check(model: &Model, digests: [&str; 3]) {
-    let options = EmbedOptions {
-        strength: Strength::STRONG,
-        ..EmbedOptions::default()
-    };
+fn check(model: &Built, digests: [&str; 3]) {
+    let options = EmbedOptions::default().with_strength(Strength::STRONG);
     let embedding = embed(
-        &model.bytes,
-        &model.files,
+        Model::new(&model.bytes).with_files(&model.files),
         payload(),
         &key(1),
         &options,
-        &mut ignore,
     )
     .unwrap();
-    let bytes = measure(&embedding.model, &embedding.files, &mut ignore)
+    let bytes = measure(Model::new(&embedding.model).with_files(&embedding.files))
         .unwrap()
         .to_bytes();
     let seen = [&model.bytes, &embedding.model, &bytes].map(|bytes| digest(bytes));
@@ -38,8 +33,8 @@ fn digest(bytes: &[u8]) -> String {
         .collect()
 }
 
-fn glb(mesh: &Mesh) -> Model {
-    Model {
+fn glb(mesh: &Mesh) -> Built {
+    Built {
         bytes: to_glb(mesh),
         files: Files::new(),
     }

@@ -18,6 +18,7 @@ mod detection;
 mod document;
 mod errors;
 mod evidence;
+mod examples;
 mod floors;
 mod geometry;
 mod golden;

@@ -1,7 +1,7 @@
 //! Edges, rings and winding of good and bad meshes.
 
 use glam::DVec3;
-use meshmark::mesh::{Admissible, Edges, Mesh, Orbit, shapes};
+use meshmark::internals::mesh::{Admissible, Edges, Mesh, Orbit, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];

@@ -3,11 +3,11 @@
 
 use crate::support::fixtures::{key, payload};
 use glam::DVec3;
-use meshmark::attack::{crop, noise, quantize, similarity, smooth};
-use meshmark::document::Document;
-use meshmark::mesh::Mesh;
-use meshmark::scene::{Scene, to_glb};
-use meshmark::{Carrier, EmbedOptions, Evidence, Files, Strength, Verdict, embed, extract, ignore};
+use meshmark::internals::attack::{crop, noise, quantize, similarity, smooth};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{Carrier, EmbedOptions, Evidence, Files, Strength, Verdict, embed, extract};
 use std::path::{Path, PathBuf};
 
 fn model(name: &str) -> Option<PathBuf> {
@@ -56,19 +56,10 @@ fn models_bunny_is_found_in_half_of_itself() {
         return;
     };
     let host = to_glb(&read_obj(&path));
-    let options = EmbedOptions {
-        strength: Strength::new(0.0001).unwrap(),
-        carriers: vec![Carrier::Ring],
-    };
-    let marked = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(9),
-        &options,
-        &mut ignore,
-    )
-    .unwrap();
+    let options = EmbedOptions::default()
+        .with_strength(Strength::new(0.0001).unwrap())
+        .with_carriers([Carrier::Ring]);
+    let marked = embed(&host, payload(), &key(9), &options).unwrap();
     assert!(
         marked.report.rms_rel <= 0.00011,
         "{}",
@@ -78,7 +69,7 @@ fn models_bunny_is_found_in_half_of_itself() {
         .unwrap()
         .mesh;
     for seed in 20..23 {
-        let half = extract(&Evidence::measure(&crop(&mesh, 0.5, seed)), &key(9));
+        let half = extract(&Evidence::of_mesh(&crop(&mesh, 0.5, seed)), &key(9));
         assert_eq!(
             (half.verdict, half.tag.as_deref()),
             (Verdict::Found, Some("ADA-1"))
@@ -93,15 +84,7 @@ fn models_bunny_is_found_after_everything_that_keeps_its_shape() {
         return;
     };
     let host = to_glb(&read_obj(&path));
-    let marked = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(9),
-        &EmbedOptions::default(),
-        &mut ignore,
-    )
-    .unwrap();
+    let marked = embed(&host, payload(), &key(9), &EmbedOptions::default()).unwrap();
     assert!(
         marked.report.rms_rel <= 0.0004 * (1.0 + 1e-6),
         "{}",
@@ -119,7 +102,7 @@ fn models_bunny_is_found_after_everything_that_keeps_its_shape() {
             similarity(&smooth(&mesh, 0.1, 50), 2),
         ),
     ] {
-        let found = extract(&Evidence::measure(&suspect), &key(9));
+        let found = extract(&Evidence::of_mesh(&suspect), &key(9));
         assert_eq!(
             (found.verdict, found.tag.as_deref()),
             (Verdict::Found, Some("ADA-1")),
@@ -134,15 +117,7 @@ fn models_knight_is_marked_and_found() {
         return;
     };
     let host = std::fs::read(path).unwrap();
-    let marked = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(9),
-        &EmbedOptions::default(),
-        &mut ignore,
-    )
-    .unwrap();
+    let marked = embed(&host, payload(), &key(9), &EmbedOptions::default()).unwrap();
     assert!(
         marked.report.read_back.details().ln_p < -30.0,
         "{:?}",
@@ -157,15 +132,7 @@ fn models_regular_shapes_are_marked_and_found() {
         return;
     };
     let host = std::fs::read(path).unwrap();
-    let marked = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(9),
-        &EmbedOptions::default(),
-        &mut ignore,
-    )
-    .unwrap();
+    let marked = embed(&host, payload(), &key(9), &EmbedOptions::default()).unwrap();
     assert!(
         marked.report.read_back.details().ln_p < -30.0,
         "{:?}",
@@ -175,7 +142,7 @@ fn models_regular_shapes_are_marked_and_found() {
         .unwrap()
         .mesh;
     let altered = quantize(&similarity(&mesh, 31), 14);
-    let found = extract(&Evidence::measure(&altered), &key(9));
+    let found = extract(&Evidence::of_mesh(&altered), &key(9));
     assert_eq!(
         (found.verdict, found.tag.as_deref()),
         (Verdict::Found, Some("ADA-1")),

@@ -1,19 +1,21 @@
 //! Notes, from bytes to texts, alone and beside a mark.
 
 use crate::support::fixtures::{gallery, key, marked};
-use crate::support::gltf_builder::{Model, Packing};
-use meshmark::mesh::shapes;
-use meshmark::note::{self, NoteReading};
-use meshmark::scene::to_glb;
-use meshmark::{Error, Files, Verdict, demo_model, extract, ignore, measure};
+use crate::support::gltf_builder::{Built, Packing};
+use meshmark::internals::mesh::shapes;
+use meshmark::internals::scene::to_glb;
+use meshmark::{
+    Error, Model, NoteEmbedding, NoteReading, Verdict, demo_model, embed_note, extract, measure,
+    note_capacity, read_note,
+};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-fn noted(model: &[u8], text: &str) -> Result<note::NoteEmbedding, Error> {
-    note::embed(model, &Files::new(), text, &key(1), &mut ignore)
+fn noted(model: &[u8], text: &str) -> Result<NoteEmbedding, Error> {
+    embed_note(model, text, &key(1))
 }
 
 fn read(model: &[u8], reader: u8) -> NoteReading {
-    note::read(model, &Files::new(), &key(reader), &mut ignore).unwrap()
+    read_note(model, &key(reader)).unwrap()
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -46,7 +48,7 @@ fn note_stands_a_mark_on_top_and_leaves_it_alone() {
     let found = read(&both, 1);
     assert_eq!(found.text.as_deref(), Some("below the mark"));
     let [alone, both] = [alone, both].map(|model| {
-        let evidence = measure(&model, &Files::new(), &mut ignore).unwrap();
+        let evidence = measure(&model).unwrap();
         let mark = extract(&evidence, &key(1));
         assert_eq!(mark.verdict, Verdict::Found);
         mark
@@ -64,13 +66,13 @@ fn note_stands_a_mark_on_top_and_leaves_it_alone() {
 #[wasm_bindgen_test(unsupported = test)]
 fn note_fits_every_packing() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
-        let Model { bytes, files } = gallery(packing);
-        let noted = note::embed(&bytes, &files, "hello", &key(1), &mut ignore).unwrap();
+        let Built { bytes, files } = gallery(packing);
+        let noted = embed_note(Model::new(&bytes).with_files(&files), "hello", &key(1)).unwrap();
         let external = usize::from(packing == Packing::External);
         assert_eq!(noted.files.len(), external);
-        let found = note::read(&noted.model, &noted.files, &key(1), &mut ignore).unwrap();
+        let found = read_note(Model::new(&noted.model).with_files(&noted.files), &key(1)).unwrap();
         assert_eq!(found.text.as_deref(), Some("hello"), "{packing:?}");
-        let room = note::capacity(&bytes, &files).unwrap();
+        let room = note_capacity(Model::new(&bytes).with_files(&files)).unwrap();
         assert_eq!(room, noted.report.capacity);
     }
 }

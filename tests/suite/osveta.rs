@@ -1,9 +1,9 @@
 //! Rankings of vertices by stability.
 
 use glam::DVec3;
-use meshmark::attack::{reorder, similarity};
-use meshmark::carrier::osveta::{Ranking, Stability, rank};
-use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::attack::{reorder, similarity};
+use meshmark::internals::carrier::osveta::{Ranking, Stability, rank};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn is_decreasing(found: &Stability) -> bool {

@@ -1,12 +1,12 @@
 //! What an attack costs.
 
 use crate::support::fixtures::asteroid;
-use meshmark::attack::{
+use meshmark::internals::attack::{
     bend, crop, into_scene, midpoint, mirror, noise, reorder, similarity, simplify, smooth, soup,
     swap_axes, warp,
 };
-use meshmark::geometry::{Distortion, Quality, diagonal};
-use meshmark::mesh::{Mesh, shapes};
+use meshmark::internals::geometry::{Distortion, Quality, diagonal};
+use meshmark::internals::mesh::{Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// RMS, Hausdorff and MSDM.

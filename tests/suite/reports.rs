@@ -1,12 +1,12 @@
 //! What reports say, and what they may not: below "found" nothing that follows the key but the verdict.
 
 use crate::support::fixtures::{asteroid, key, payload};
-use meshmark::carrier::{ring, solid};
-use meshmark::detection::LN_P_FOUND;
-use meshmark::scene::to_glb;
+use meshmark::internals::carrier::{Measurement, ring};
+use meshmark::internals::detection::LN_P_FOUND;
+use meshmark::internals::scene::to_glb;
 use meshmark::{
-    Carrier, EmbedOptions, Evidence, Files, Input, Key, Payload, Strength, Verdict, detect, embed,
-    extract, extract_many, ignore, measure, verify,
+    Carrier, EmbedOptions, Evidence, Input, Key, Payload, Strength, Verdict, detect, embed,
+    extract, extract_many, measure, verify,
 };
 use serde_json::{Value, to_value};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -16,37 +16,28 @@ const RING_BYTES: usize = 26;
 
 /// A mesh whose RING alone is marked by key 1.
 fn ringed() -> Vec<u8> {
-    let options = EmbedOptions {
-        strength: Strength::STRONG,
-        carriers: vec![Carrier::Ring],
-    };
+    let options = EmbedOptions::default()
+        .with_strength(Strength::STRONG)
+        .with_carriers([Carrier::Ring]);
     let host = to_glb(&asteroid());
-    let marked = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(1),
-        &options,
-        &mut ignore,
-    );
+    let marked = embed(&host, payload(), &key(1), &options);
     marked.unwrap().model
 }
 
 fn measured(model: &[u8]) -> Evidence {
-    measure(model, &Files::new(), &mut ignore).unwrap()
+    measure(model).unwrap()
 }
 
 /// The first so many rings of a suspect, and nothing of its shape.
 fn part(rings: &[u8], num: usize) -> Evidence {
-    Evidence {
-        ring: ring::Measurement::from_bytes(&rings[..num * RING_BYTES]).unwrap(),
-        solid: solid::Measurement::from_bytes(&[]).unwrap(),
-    }
+    Evidence::from_iter([Measurement::Ring(
+        ring::Measurement::from_bytes(&rings[..num * RING_BYTES]).unwrap(),
+    )])
 }
 
 /// The rings of the marked mesh, each off by up to 0.3 of the quantizer's step, 0.04: then a payload is decoded while its bound is weak.
 fn blurred() -> Vec<u8> {
-    let mut rings = measured(&ringed()).ring.to_bytes();
+    let mut rings = measured(&ringed()).measurement(Carrier::Ring).to_bytes();
     for (place, ring) in rings.chunks_exact_mut(RING_BYTES).enumerate() {
         let (_, offset) = ring.split_last_chunk_mut().unwrap();
         let spread = (place as f32 * 0.618_034).fract() * 2.0 - 1.0;
@@ -73,7 +64,7 @@ fn reports_below_found_do_not_follow_the_key() {
     let evidence = measured(&model);
     let reports = |wrong: u8| -> [Value; 4] {
         let key = key(wrong);
-        let read = |expected| detect(&model, &Files::new(), &key, expected, &mut ignore).unwrap();
+        let read = |expected| detect(&model, &key, expected).unwrap();
         [
             extract(&evidence, &key),
             verify(&evidence, &key, payload()),
@@ -157,7 +148,9 @@ fn payloads_are_told_only_where_found() {
 /// Whether there is enough to tell depends on the suspect alone: a verdict that followed the key would say what the key owns.
 #[wasm_bindgen_test(unsupported = test)]
 fn cannot_check_is_said_to_every_key_or_to_none() {
-    let rings = measured(&to_glb(&asteroid())).ring.to_bytes();
+    let rings = measured(&to_glb(&asteroid()))
+        .measurement(Carrier::Ring)
+        .to_bytes();
     let verdicts: Vec<Verdict> = (100..360)
         .step_by(20)
         .map(|num| {
@@ -173,7 +166,7 @@ fn cannot_check_is_said_to_every_key_or_to_none() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn many_keys_are_charged_in_all_that_is_said() {
-    let rings = measured(&ringed()).ring.to_bytes();
+    let rings = measured(&ringed()).measurement(Carrier::Ring).to_bytes();
     let many = |evidence: &Evidence, num: u8| {
         let keys: Vec<Key> = (1..=num).map(key).collect();
         extract_many(evidence, &keys)

@@ -2,13 +2,13 @@
 
 use crate::support::fixtures::{asteroid, key};
 use glam::{DMat3, DVec3};
-use meshmark::attack::{crop, reorder, similarity};
-use meshmark::carrier::ring::{Measurement, NEEDED_ADDRESSES, num_addresses};
-use meshmark::carrier::{Carrier, Host, Hypothesis, Mark, StoredError};
-use meshmark::code::{Codeword, Symbol};
-use meshmark::detection::Statistic;
-use meshmark::ignore;
-use meshmark::mesh::{Admissible, Mesh, Orbit, shapes};
+use meshmark::internals::attack::{crop, reorder, similarity};
+use meshmark::internals::carrier::ring::{Measurement, NEEDED_ADDRESSES, num_addresses};
+use meshmark::internals::carrier::{Carrier, Host, Hypothesis, Mark, StoredError};
+use meshmark::internals::code::{Codeword, Symbol};
+use meshmark::internals::detection::Statistic;
+use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
+use meshmark::internals::progress::ignore;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x123_4567_89ab_cdef;
@@ -64,7 +64,7 @@ fn ring_marks_a_mesh_within_the_limit() {
     let displacement = marked(&asteroid, &Admissible::default());
     let result = displaced(&asteroid, &displacement);
     let distortion =
-        meshmark::geometry::Distortion::between(&asteroid.positions, &result.positions);
+        meshmark::internals::geometry::Distortion::between(&asteroid.positions, &result.positions);
     assert!(
         distortion.rms_rel <= 0.0004 * (1.0 + 1e-12),
         "{distortion:?}"

@@ -2,10 +2,10 @@
 
 use crate::support::fixtures::{key, marked};
 use glam::DVec3;
-use meshmark::attack::{quantize, reorder, similarity};
-use meshmark::document::Document;
-use meshmark::mesh::Mesh;
-use meshmark::scene::{Scene, to_glb};
+use meshmark::internals::attack::{quantize, reorder, similarity};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{Evidence, Verdict, extract};
 use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -44,7 +44,7 @@ fn robustness_of_regular_shapes() {
             quantize(&similarity(&marked, 43), 12),
         ),
     ] {
-        let answer = extract(&Evidence::measure(&suspect), &key(1));
+        let answer = extract(&Evidence::of_mesh(&suspect), &key(1));
         assert_eq!(answer.verdict, Verdict::Found, "{attack}: {answer:?}");
         assert!(
             answer.details().ln_p < -100.0,

@@ -1,15 +1,17 @@
 //! From documents to meshes and back.
 
 use crate::support::fixtures::gallery;
-use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
+use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
-use meshmark::document::Document;
-use meshmark::document::MAX_UNBACKED;
-use meshmark::mesh::{Edges, Mesh, shapes};
-use meshmark::scene::{Count, MAX_ELEMENTS, MAX_PARTS, MAX_TRIANGLES, Scene, SceneError, to_glb};
+use meshmark::internals::document::Document;
+use meshmark::internals::document::MAX_UNBACKED;
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::scene::{
+    Count, MAX_ELEMENTS, MAX_PARTS, MAX_TRIANGLES, Scene, SceneError, to_glb,
+};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-fn read(model: &Model) -> Document {
+fn read(model: &Built) -> Document {
     Document::read(&model.bytes, &model.files).unwrap()
 }
 

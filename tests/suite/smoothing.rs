@@ -2,12 +2,12 @@
 
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
-use meshmark::attack::{
+use meshmark::internals::attack::{
     bilaplacian, catmull_clark, mean_curvature_flow, mean_filter, noise, optimize, simplify_to,
     smooth, taubin,
 };
-use meshmark::geometry::{Quadrature, dihedrals, face_areas};
-use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::geometry::{Quadrature, dihedrals, face_areas};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A spindle of valence 6 whose rim is neither flat nor regular: its tip alone may move.

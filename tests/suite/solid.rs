@@ -2,14 +2,16 @@
 
 use crate::support::fixtures::key;
 use glam::DVec3;
-use meshmark::attack::{crop, noise, quantize, reorder, similarity, smooth, smooth_inside};
-use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
-use meshmark::carrier::{Carrier, Host, Mark, StoredError};
-use meshmark::code::{Codeword, SoftSymbol, Symbol};
-use meshmark::detection::Statistic;
-use meshmark::geometry::{Distortion, diagonal};
-use meshmark::ignore;
-use meshmark::mesh::{Admissible, Mesh, shapes};
+use meshmark::internals::attack::{
+    crop, noise, quantize, reorder, similarity, smooth, smooth_inside,
+};
+use meshmark::internals::carrier::solid::{Measurement, Surfaces, num_windows};
+use meshmark::internals::carrier::{Carrier, Host, Mark, StoredError};
+use meshmark::internals::code::{Codeword, SoftSymbol, Symbol};
+use meshmark::internals::detection::Statistic;
+use meshmark::internals::geometry::{Distortion, diagonal};
+use meshmark::internals::mesh::{Admissible, Mesh, shapes};
+use meshmark::internals::progress::ignore;
 use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -1,15 +1,15 @@
 //! The study of the seed paper: hosts found again.
 
-use meshmark::carrier::osveta::{Ranking, rank};
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::study::{
+use meshmark::internals::carrier::osveta::{Ranking, rank};
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::study::{
     HostsOptions, HostsRow, Preparation, Rule, RuleCounts, Smoothing, fields, hosts, trace,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A mesh of 3000 faces, as the paper's was made.
 fn optimized() -> Mesh {
-    meshmark::attack::optimize(&shapes::torus_knot(110, 30), 3000)
+    meshmark::internals::attack::optimize(&shapes::torus_knot(110, 30), 3000)
 }
 
 fn row(mesh: &Mesh, smoothing: Smoothing, iterations: u32) -> HostsRow {

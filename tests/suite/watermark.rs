@@ -1,22 +1,22 @@
 //! The pipelines, from bytes to verdicts.
 
 use crate::support::fixtures::{asteroid, gallery, key, marked, payload};
-use crate::support::gltf_builder::{Model, Packing};
+use crate::support::gltf_builder::{Built, Packing};
 use glam::DVec3;
-use meshmark::attack::{crop, noise, simplify};
-use meshmark::carrier::{ring, solid};
-use meshmark::document::Document;
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::scene::{Scene, to_glb};
+use meshmark::internals::attack::{crop, noise, simplify};
+use meshmark::internals::carrier::{Measurement, ring};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Payload, Stage, Strength, Verdict,
-    demo_model, embed, extract, ignore, inspect, measure, verify,
+    Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Model, Payload, Stage, Strength,
+    Verdict, demo_model, embed, extract, inspect, measure, verify,
 };
 use std::ops::ControlFlow;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn measured(model: &[u8]) -> Evidence {
-    measure(model, &Files::new(), &mut ignore).unwrap()
+    measure(model).unwrap()
 }
 
 fn read(model: &[u8], reader: u8) -> Extraction {
@@ -24,10 +24,7 @@ fn read(model: &[u8], reader: u8) -> Extraction {
 }
 
 fn strong() -> EmbedOptions {
-    EmbedOptions {
-        strength: Strength::STRONG,
-        ..EmbedOptions::default()
-    }
+    EmbedOptions::default().with_strength(Strength::STRONG)
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -74,27 +71,27 @@ fn watermark_report_is_true() {
     );
     assert!((report.diagonal - 3.6).abs() < 0.3, "{}", report.diagonal);
     assert_ne!(report.host_sha256, report.marked_sha256);
-    assert_eq!(
-        report.host_sha256,
-        inspect(&host, &Files::new()).unwrap().sha256
-    );
-    assert_eq!(
-        report.marked_sha256,
-        inspect(&marked.model, &Files::new()).unwrap().sha256
-    );
+    assert_eq!(report.host_sha256, inspect(&host).unwrap().sha256);
+    assert_eq!(report.marked_sha256, inspect(&marked.model).unwrap().sha256);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn watermark_marks_every_kind_of_document() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
-        let Model { bytes, files } = gallery(packing);
-        let marked = embed(&bytes, &files, payload(), &key(1), &strong(), &mut ignore).unwrap();
+        let Built { bytes, files } = gallery(packing);
+        let marked = embed(
+            Model::new(&bytes).with_files(&files),
+            payload(),
+            &key(1),
+            &strong(),
+        )
+        .unwrap();
         assert_eq!(
             marked.files.len(),
             usize::from(packing == Packing::External)
         );
         let found = extract(
-            &measure(&marked.model, &marked.files, &mut ignore).unwrap(),
+            &measure(Model::new(&marked.model).with_files(&marked.files)).unwrap(),
             &key(1),
         );
         assert_eq!(
@@ -110,24 +107,8 @@ fn watermark_of_another_owner_leaves_the_first() {
     let first = marked(&demo_model(), &key(1)).unwrap();
     let options = EmbedOptions::default();
     let other = Payload::from_tag("BOB").unwrap();
-    let second = embed(
-        &first.model,
-        &Files::new(),
-        other,
-        &key(2),
-        &options,
-        &mut ignore,
-    )
-    .unwrap();
-    let third = embed(
-        &second.model,
-        &Files::new(),
-        other,
-        &key(3),
-        &options,
-        &mut ignore,
-    )
-    .unwrap();
+    let second = embed(&first.model, other, &key(2), &options).unwrap();
+    let third = embed(&second.model, other, &key(3), &options).unwrap();
     let evidence = measured(&third.model);
     for (reader, tag) in [(1, "ADA-1"), (2, "BOB"), (3, "BOB")] {
         let found = extract(&evidence, &key(reader));
@@ -161,16 +142,7 @@ fn verify_finds_the_expected_payload_and_names_another() {
 #[wasm_bindgen_test(unsupported = test)]
 fn verify_never_takes_one_payload_for_another() {
     let host = to_glb(&shapes::asteroid(20, 26));
-    let model = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(1),
-        &strong(),
-        &mut ignore,
-    )
-    .unwrap()
-    .model;
+    let model = embed(&host, payload(), &key(1), &strong()).unwrap().model;
     let evidence = measured(&model);
     for flip in (0..Payload::BITS).step_by(6) {
         let neighbour = Payload::from_number(payload().number() ^ 1 << flip).unwrap();
@@ -190,29 +162,16 @@ const NOISES: [f64; 3] = [0.0012, 0.0014, 0.0016];
 #[wasm_bindgen_test(unsupported = test)]
 fn verify_names_no_neighbour_of_a_damaged_mark() {
     let host = simplify(&shapes::asteroid(70, 100), 0.5);
-    let options = EmbedOptions {
-        carriers: vec![Carrier::Ring],
-        ..strong()
-    };
+    let options = EmbedOptions::default().with_carriers([Carrier::Ring]);
     let number = 1_000_005;
     let payload = Payload::from_number(number).unwrap();
-    let model = embed(
-        &to_glb(&host),
-        &Files::new(),
-        payload,
-        &key(1),
-        &options,
-        &mut ignore,
-    );
+    let model = embed(&to_glb(&host), payload, &key(1), &options);
     let document = model.unwrap().model;
     let marked = Scene::gather(&Document::read(&document, &Files::new()).unwrap()).unwrap();
     let [mut num_right, mut num_undecoded] = [0, 0];
     for (seed, amplitude) in (0..8).flat_map(|seed| NOISES.map(|amplitude| (seed, amplitude))) {
         let damaged = noise(&crop(&marked.mesh, 0.6, seed), amplitude, seed);
-        let evidence = Evidence {
-            ring: ring::Measurement::new(&damaged),
-            solid: solid::Measurement::from_bytes(&[]).unwrap(),
-        };
+        let evidence = Evidence::from_iter([Measurement::Ring(ring::Measurement::new(&damaged))]);
         let is_found = |number| {
             let payload = Payload::from_number(number).unwrap();
             verify(&evidence, &key(1), payload).verdict == Verdict::Found
@@ -244,20 +203,9 @@ fn verdict_is_cannot_check_where_there_is_too_little() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn embed_returns_nothing_that_it_cannot_read() {
-    let options = EmbedOptions {
-        strength: Strength::new(1e-5).unwrap(),
-        ..EmbedOptions::default()
-    };
+    let options = EmbedOptions::default().with_strength(Strength::new(1e-5).unwrap());
     let host = to_glb(&shapes::asteroid(18, 24));
-    let error = embed(
-        &host,
-        &Files::new(),
-        payload(),
-        &key(1),
-        &options,
-        &mut ignore,
-    )
-    .unwrap_err();
+    let error = embed(&host, payload(), &key(1), &options).unwrap_err();
     assert!(matches!(error, Error::Unreadable { .. }), "{error}");
     assert_eq!(error.code(), "watermark.unreadable");
 }
@@ -272,12 +220,10 @@ fn embed_stops_when_asked_at_any_stage() {
         ControlFlow::Continue(())
     };
     embed(
-        &model,
-        &Files::new(),
+        Model::new(&model).with_progress(&mut listen),
         payload(),
         &key(1),
         &EmbedOptions::default(),
-        &mut listen,
     )
     .unwrap();
     let mut order = stages.clone();
@@ -304,12 +250,10 @@ fn embed_stops_when_asked_at_any_stage() {
             None => ControlFlow::Break(()),
         };
         let error = embed(
-            &model,
-            &Files::new(),
+            Model::new(&model).with_progress(&mut listen),
             payload(),
             &key(1),
             &EmbedOptions::default(),
-            &mut listen,
         );
         assert_eq!(error.unwrap_err().code(), "aborted", "at report {stop}");
     }
@@ -326,19 +270,8 @@ fn options_out_of_range_are_refused() {
     }
     assert_eq!("strong".parse::<Strength>().unwrap().rms_rel(), 0.0008);
     assert_eq!("0.0005".parse::<Strength>().unwrap().rms_rel(), 0.0005);
-    let options = EmbedOptions {
-        carriers: vec![],
-        ..EmbedOptions::default()
-    };
-    let error = embed(
-        &demo_model(),
-        &Files::new(),
-        payload(),
-        &key(1),
-        &options,
-        &mut ignore,
-    )
-    .unwrap_err();
+    let options = EmbedOptions::default().with_carriers([]);
+    let error = embed(&demo_model(), payload(), &key(1), &options).unwrap_err();
     assert_eq!(error.code(), "options.no-carrier");
     assert_eq!(Carrier::from_name("ring"), Some(Carrier::Ring));
     assert_eq!(Carrier::from_name("rings"), None);
@@ -373,8 +306,8 @@ fn wrong_keys_find_nothing() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn inspect_describes_the_scene() {
-    let Model { bytes, files } = gallery(Packing::External);
-    let inspection = inspect(&bytes, &files).unwrap();
+    let Built { bytes, files } = gallery(Packing::External);
+    let inspection = inspect(Model::new(&bytes).with_files(&files)).unwrap();
     assert_eq!(
         (inspection.container, inspection.meshes, inspection.nodes),
         ("gltf", 5, 7)

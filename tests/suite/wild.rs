@@ -2,13 +2,13 @@
 
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
-use meshmark::attack::{
+use meshmark::internals::attack::{
     CATALOGUE, bake, bend, convert_units, delaunay, into_scene, mirror, noise, soup, split,
     swap_axes, take_out, weld,
 };
-use meshmark::geometry::{Surface, diagonal};
-use meshmark::mesh::{Edges, Mesh, shapes};
-use meshmark::scene::{Scene, to_glb};
+use meshmark::internals::geometry::{Surface, diagonal};
+use meshmark::internals::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::scene::{Scene, to_glb};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn volume(mesh: &Mesh) -> f64 {
@@ -238,7 +238,8 @@ fn attack_catalogue_gives_files_that_can_be_read() {
         let attacked = level.apply(&mesh, 1);
         assert_eq!(attacked, level.apply(&mesh, 1), "{level}");
         assert!(attacked.positions.iter().all(|p| p.is_finite()), "{level}");
-        let document = meshmark::document::Document::read(&to_glb(&attacked), &Default::default());
+        let document =
+            meshmark::internals::document::Document::read(&to_glb(&attacked), &Default::default());
         let scene = Scene::gather(&document.unwrap()).unwrap();
         assert!(!scene.mesh.triangles.is_empty(), "{level}");
         let nothing = level.apply(&Mesh::default(), 1);

@@ -33,7 +33,7 @@ export function prepareNative(cli, work) {
     },
     embed() {
       const { report } = call(cli, ["embed", host, join(folder, "output.glb"), ...byKey, "--tag", work.embed.tag], DONE);
-      return { ms: report.ms, sha256: report.marked_sha256 };
+      return { ms: report.ms, sha256: report.markedSha256 };
     },
     extract() {
       const { report } = call(cli, ["extract", marked, ...byKey], DONE);

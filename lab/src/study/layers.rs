@@ -3,12 +3,12 @@
 use super::measure::{Read, read_note, text};
 use crate::case::gathered;
 use crate::seed::Seed;
-use meshmark::geometry::Distortion;
-use meshmark::scene::to_glb;
-use meshmark::study::Smoothing;
+use meshmark::internals::geometry::Distortion;
+use meshmark::internals::scene::to_glb;
+use meshmark::internals::study::Smoothing;
 use meshmark::{
-    Carrier, EmbedOptions, Extraction, Files, Key, Payload, Strength, embed, extract, ignore,
-    measure, note,
+    Carrier, EmbedOptions, Extraction, Files, Key, Model, Payload, Strength, embed, embed_note,
+    extract, measure,
 };
 
 /// What is written, in this order.
@@ -76,21 +76,18 @@ struct Trial<'a> {
 impl Trial<'_> {
     fn copy(&self, writes: &[Write]) -> Result<Vec<u8>, String> {
         let files = Files::new();
-        let options = EmbedOptions {
-            strength: Strength::STRONG,
-            ..EmbedOptions::default()
-        };
+        let options = EmbedOptions::default().with_strength(Strength::STRONG);
         let write = |model: Vec<u8>, write: &Write| {
             let written = match write {
-                Write::Note => note::embed(&model, &files, &self.text, &self.key, &mut ignore)
-                    .map(|embedding| embedding.model),
+                Write::Note => {
+                    embed_note(Model::new(&model).with_files(&files), &self.text, &self.key)
+                        .map(|embedding| embedding.model)
+                }
                 Write::Mark => embed(
-                    &model,
-                    &files,
+                    Model::new(&model).with_files(&files),
                     self.payload,
                     &self.key,
                     &options,
-                    &mut ignore,
                 )
                 .map(|embedding| embedding.model),
             };
@@ -102,7 +99,7 @@ impl Trial<'_> {
     fn read(&self, copy: &[u8], iterations: u32) -> Result<Layers, String> {
         let (host, copy) = (gathered(self.model)?, gathered(copy)?);
         let suspect = to_glb(&Smoothing::MeshSmooth.apply(&copy, iterations));
-        let evidence = measure(&suspect, &Files::new(), &mut ignore);
+        let evidence = measure(&suspect);
         let read = extract(&evidence.map_err(|error| error.to_string())?, &self.key);
         Ok(Layers {
             rms_rel: Distortion::between(&host.positions, &copy.positions).rms_rel,

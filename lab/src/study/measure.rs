@@ -4,15 +4,16 @@ use super::layers::{Layer, layers};
 use crate::case::gathered;
 use crate::models::Model;
 use crate::seed::Seed;
-use meshmark::carrier::osveta::Barycentre;
-use meshmark::geometry::Distortion;
-use meshmark::mesh::Mesh;
-use meshmark::scene::to_glb;
-use meshmark::study::errors::{
+use meshmark::internals::carrier::osveta::Barycentre;
+use meshmark::internals::geometry::Distortion;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::progress::ignore;
+use meshmark::internals::scene::to_glb;
+use meshmark::internals::study::errors::{
     Case, Errors, Figure5, Hosts, STRENGTH, errors, figure_5, smoothings,
 };
-use meshmark::study::{Preparation, Smoothing, Study, study};
-use meshmark::{Carrier, EmbedOptions, Files, Key, Strength, Verdict, detect, embed, ignore, note};
+use meshmark::internals::study::{Preparation, Smoothing, Study, study};
+use meshmark::{Carrier, EmbedOptions, Key, Strength, Verdict, detect, embed, embed_note};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -127,16 +128,15 @@ fn marks(mesh: &Mesh, model: &Model, seed: &Seed) -> Vec<Smoothed> {
     let key = seed.key(&model.name, 1);
     let payload = seed.payload(&model.name);
     let marked = |carrier: Carrier| {
-        let options = EmbedOptions {
-            strength: Strength::STRONG,
-            carriers: vec![carrier],
-        };
-        let embedding = embed(&bytes, &Files::new(), payload, &key, &options, &mut ignore);
+        let options = EmbedOptions::default()
+            .with_strength(Strength::STRONG)
+            .with_carriers([carrier]);
+        let embedding = embed(&bytes, payload, &key, &options);
         gathered(&embedding.map_err(said)?.model)
     };
     let text = text(seed, &model.name);
     let noted = || {
-        let embedding = note::embed(&bytes, &Files::new(), &text, &key, &mut ignore);
+        let embedding = embed_note(&bytes, &text, &key);
         gathered(&embedding.map_err(said)?.model)
     };
     let copies = [marked(Carrier::Solid), marked(Carrier::Ring), noted()];
@@ -151,7 +151,7 @@ fn marks(mesh: &Mesh, model: &Model, seed: &Seed) -> Vec<Smoothed> {
         };
         let mark = |copy| {
             suspect(copy).and_then(|bytes: Vec<u8>| {
-                let read = detect(&bytes, &Files::new(), &key, None, &mut ignore).map_err(said)?;
+                let read = detect(&bytes, &key, None).map_err(said)?;
                 Ok(Read {
                     is_right: read.verdict == Verdict::Found
                         && read.number == Some(payload.number()),
@@ -180,7 +180,7 @@ pub fn text(seed: &Seed, purpose: &str) -> String {
 }
 
 pub fn read_note(bytes: &[u8], key: &Key, text: &str) -> Result<Read, String> {
-    let read = note::read(bytes, &Files::new(), key, &mut ignore).map_err(said)?;
+    let read = meshmark::read_note(bytes, key).map_err(said)?;
     Ok(Read {
         is_right: read.text.as_deref() == Some(text),
         ln_p: read.ln_p,

@@ -6,9 +6,9 @@ use super::verdict::{counts, find, statements};
 use crate::plot::{Panel, Row, bars, grid, panels};
 use crate::report::median;
 use crate::seed::Seed;
-use meshmark::carrier::osveta::Ranking;
-use meshmark::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
-use meshmark::study::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
+use meshmark::internals::carrier::osveta::Ranking;
+use meshmark::internals::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
+use meshmark::internals::study::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
 use std::fmt::Write;
 
 /// Hosts of the curves, in the order of their colours.
@@ -592,9 +592,9 @@ fn percent(fraction: f64) -> f64 {
 mod tests {
     use super::super::layers::Layer;
     use super::*;
-    use meshmark::ignore;
-    use meshmark::mesh::shapes;
-    use meshmark::study::study;
+    use meshmark::internals::mesh::shapes;
+    use meshmark::internals::progress::ignore;
+    use meshmark::internals::study::study;
 
     /// A mesh that is just large enough; its marks are made up.
     fn outcome(name: &str) -> Outcome {

@@ -1,6 +1,6 @@
 //! Documents of every kind that the laws are tested with.
 
-use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
+use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 
 /// How the positions of a case are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ pub fn all() -> Vec<Case> {
 
 impl Case {
     /// The files of the case.
-    pub fn build(&self) -> Model {
+    pub fn build(&self) -> Built {
         let mut noise = Noise(self.seed);
         let mut builder = GltfBuilder::new(self.packing);
         builder.odd = self.odd;

@@ -1,13 +1,13 @@
 //! Single properties of documents, one each.
 
-use meshmark::document::{
+use meshmark::internals::document::{
     Container, Document, DocumentError, Files, Mode, PositionGrid, Transform,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::oracle::Oracle;
 use crate::support::gltf_builder::{
-    Component, GltfBuilder, Layout, Model, Packing, glb, primitive,
+    Built, Component, GltfBuilder, Layout, Packing, glb, primitive,
 };
 
 const TRIANGLE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -16,7 +16,7 @@ fn read(builder: &GltfBuilder) -> Document {
     read_model(&builder.build())
 }
 
-fn read_model(model: &Model) -> Document {
+fn read_model(model: &Built) -> Document {
     Document::read(&model.bytes, &model.files).expect("a readable document")
 }
 
@@ -642,7 +642,7 @@ fn two_buffers_of_one_file_are_the_same_bytes() {
     let view = builder.view(1, 0, 36, None);
     let other = builder.positions_at(view, 0, Layout::F32, &TRIANGLE);
     builder.mesh(&[primitive(other, None, 4)]);
-    let model = Model {
+    let model = Built {
         bytes: builder
             .json()
             .replace("part%201.bin", "part%200.bin")
@@ -672,7 +672,7 @@ fn bytes_after_a_buffer_are_kept() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_byte_order_mark_is_kept() {
-    let model = Model {
+    let model = Built {
         bytes: format!("\u{feff}{}", triangle(Packing::DataUri).json()).into_bytes(),
         files: Files::new(),
     };

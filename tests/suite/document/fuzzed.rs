@@ -1,11 +1,11 @@
 //! Damaged files of every kind: they are refused or read, but never end in a panic.
 
-use meshmark::document::Document;
+use meshmark::internals::document::Document;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
 use super::cases;
-use crate::support::gltf_builder::Model;
+use crate::support::gltf_builder::Built;
 
 /// A damage to a run of bytes.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ fn apply(bytes: &mut Vec<u8>, damage: &Damage) {
 }
 
 /// Does everything there is to do.
-fn exercise(model: &Model) {
+fn exercise(model: &Built) {
     let Ok(mut document) = Document::read(&model.bytes, &model.files) else {
         return;
     };

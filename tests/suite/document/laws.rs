@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use meshmark::document::{Document, Files, PositionGrid, Slot};
+use meshmark::internals::document::{Document, Files, PositionGrid, Slot};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::cases::{self, Case, Noise};
 use super::oracle::Oracle;
-use crate::support::gltf_builder::{Component, Model};
+use crate::support::gltf_builder::{Built, Component};
 
 #[wasm_bindgen_test(unsupported = test)]
 fn an_unchanged_document_is_written_byte_for_byte() {
@@ -325,12 +325,12 @@ fn dequantized(case: &Case, raw: f64) -> f64 {
     }
 }
 
-fn assert_unchanged(document: &Document, model: &Model, case: &Case) {
+fn assert_unchanged(document: &Document, model: &Built, case: &Case) {
     let written = document.write().expect("a written document");
     assert!(written.model == model.bytes, "{case:?}");
     assert_eq!(written.files, Files::new(), "{case:?}");
 }
 
-fn read(model: &Model) -> Document {
+fn read(model: &Built) -> Document {
     Document::read(&model.bytes, &model.files).expect("a readable document")
 }

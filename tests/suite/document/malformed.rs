@@ -1,10 +1,10 @@
 //! Malformed and unsupported files: each is refused with its code and the place.
 
-use meshmark::document::{Document, DocumentError, Files, MAX_UNBACKED};
+use meshmark::internals::document::{Document, DocumentError, Files, MAX_UNBACKED};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::gltf_builder::{
-    Component, GltfBuilder, Layout, Model, Packing, glb, primitive,
+    Built, Component, GltfBuilder, Layout, Packing, glb, primitive,
 };
 
 const POINTS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -57,7 +57,7 @@ fn assert_refused(name: &str, bytes: &[u8], files: &Files, code: &str, pointer: 
 
 #[wasm_bindgen_test(unsupported = test)]
 fn the_sound_file_is_read() {
-    let Model { bytes, files } = sound().build();
+    let Built { bytes, files } = sound().build();
     assert_eq!(read(&bytes, &files), Ok(()));
 }
 
@@ -479,7 +479,7 @@ fn malformed_json_is_refused() {
             Some("/bufferViews/0/extensions/KHR_meshopt_compression"),
         ),
     ];
-    let Model { files, .. } = sound().build();
+    let Built { files, .. } = sound().build();
     let json = sound().json();
     for &(old, new, code, pointer) in replacements {
         assert!(json.contains(old), "{old} is not in {json}");
@@ -501,7 +501,7 @@ fn malformed_json_is_refused() {
 #[wasm_bindgen_test(unsupported = test)]
 fn malformed_numbers_in_buffers_are_refused() {
     let change = |offset: usize, bytes: &[u8]| {
-        let Model {
+        let Built {
             bytes: json,
             mut files,
         } = sound().build();
@@ -565,7 +565,7 @@ fn malformed_numbers_in_buffers_are_refused() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn sparse_positions_are_checked_before_anything_is_given_out() {
-    let Model { bytes, mut files } = sound().build();
+    let Built { bytes, mut files } = sound().build();
     let buffer = files.get_mut("part 0.bin").expect("the buffer");
     buffer[104..106].copy_from_slice(&9_u16.to_le_bytes());
     let error = Document::read(&bytes, &files).map(|_| ());
@@ -579,7 +579,7 @@ fn sparse_positions_are_checked_before_anything_is_given_out() {
 fn a_lying_count_without_data_allocates_nothing() {
     let mut builder = sound();
     builder.accessors[0] = r#"{"componentType":5126,"count":4000000000,"type":"VEC3"}"#.into();
-    let Model { bytes, files } = builder.build();
+    let Built { bytes, files } = builder.build();
     assert_refused(
         "zeros",
         &bytes,
@@ -603,9 +603,9 @@ fn many_counts_without_data_are_refused_together() {
         }
         builder.build()
     };
-    let Model { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2]);
+    let Built { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2]);
     assert_eq!(read(&bytes, &files), Ok(()));
-    let Model { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2, 1]);
+    let Built { bytes, files } = with(&[MAX_UNBACKED / 2, MAX_UNBACKED / 2, 1]);
     assert_refused(
         "one more",
         &bytes,
@@ -616,7 +616,7 @@ fn many_counts_without_data_are_refused_together() {
 }
 
 /// Accessors of the same bytes, at `offset(i)` with `count(i)` elements of `stride(i)` bytes, each the positions of a primitive.
-fn overlapping(num_accessors: usize, view: impl Fn(usize) -> (usize, usize)) -> Model {
+fn overlapping(num_accessors: usize, view: impl Fn(usize) -> (usize, usize)) -> Built {
     let mut builder = GltfBuilder::new(Packing::Glb);
     builder.push(0, &vec![0; 240_000]);
     builder.view(0, 0, 240_000, None);
@@ -636,10 +636,10 @@ fn overlapping(num_accessors: usize, view: impl Fn(usize) -> (usize, usize)) -> 
 #[wasm_bindgen_test(unsupported = test)]
 fn positions_of_the_same_bytes_are_limited() {
     // Beginnings of one list, as levels of detail are: one use of their bytes.
-    let Model { bytes, files } = overlapping(200, |number| (0, 20_000 - number));
+    let Built { bytes, files } = overlapping(200, |number| (0, 20_000 - number));
     assert!(Document::read(&bytes, &files).is_ok());
     // 200 times 19 900 elements, each of which overlaps elements of all 200.
-    let Model { bytes, files } = overlapping(200, |number| (4 * number, 19_900));
+    let Built { bytes, files } = overlapping(200, |number| (4 * number, 19_900));
     assert_refused(
         "shifted",
         &bytes,
@@ -648,7 +648,7 @@ fn positions_of_the_same_bytes_are_limited() {
         Some("/accessors/134"),
     );
     // The same bytes 3400 times: 68 million vertices in 0.6 MB.
-    let Model { bytes, files } = overlapping(3400, |_| (0, 20_000));
+    let Built { bytes, files } = overlapping(3400, |_| (0, 20_000));
     assert_refused(
         "repeated",
         &bytes,
@@ -699,9 +699,9 @@ fn the_columns_of_a_matrix_are_padded() {
             ));
             builder.build()
         };
-        let Model { bytes, files } = matrices(count);
+        let Built { bytes, files } = matrices(count);
         assert_eq!(read(&bytes, &files), Ok(()));
-        let Model { bytes, .. } = matrices(count + 1);
+        let Built { bytes, .. } = matrices(count + 1);
         assert_refused(
             "one more",
             &bytes,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use meshmark::document::{Document, Files, Transform};
+use meshmark::internals::document::{Document, Files, Transform};
 
 const MODELS: &str = "../shared/models/gltf";
 

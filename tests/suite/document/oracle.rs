@@ -2,10 +2,10 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use meshmark::document::Files;
+use meshmark::internals::document::Files;
 use serde_json::Value;
 
-use crate::support::gltf_builder::{Component, Model};
+use crate::support::gltf_builder::{Built, Component};
 
 /// A taken-apart document.
 pub struct Oracle {
@@ -21,7 +21,7 @@ pub struct Oracle {
 pub type Place = (usize, usize);
 
 impl Oracle {
-    pub fn read(model: &Model) -> Self {
+    pub fn read(model: &Built) -> Self {
         Self::read_parts(&model.bytes, &model.files)
     }
 

@@ -1,8 +1,8 @@
 //! Generated models, keys and payloads.
 
-use super::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::{EmbedOptions, Embedding, Error, Files, Key, Payload, embed, ignore};
+use super::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::{EmbedOptions, Embedding, Error, Key, Payload, embed};
 
 /// A key by number: 32 bytes without the cost of a passphrase.
 pub fn key(number: u8) -> Key {
@@ -15,14 +15,7 @@ pub fn payload() -> Payload {
 
 /// Marks a `.glb` with the defaults.
 pub fn marked(model: &[u8], key: &Key) -> Result<Embedding, Error> {
-    embed(
-        model,
-        &Files::new(),
-        payload(),
-        key,
-        &EmbedOptions::default(),
-        &mut ignore,
-    )
+    embed(model, payload(), key, &EmbedOptions::default())
 }
 
 pub fn asteroid() -> Mesh {
@@ -31,7 +24,7 @@ pub fn asteroid() -> Mesh {
 
 /// A scene of many kinds of geometry: a mesh shown twice, cut open along a texture seam; normalized 16-bit positions
 /// under a scaled node, strided; a skinned mesh with morph targets; a sparse one; a line strip; unknown extras.
-pub fn gallery(packing: Packing) -> Model {
+pub fn gallery(packing: Packing) -> Built {
     let mut builder = GltfBuilder::new(packing);
     let knot = shapes::torus_knot(60, 20);
     let textured = seamed(&mut builder, &knot);

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use meshmark::document::Files;
+use meshmark::internals::document::Files;
 
 /// A component type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl Layout {
 
 /// A model file with its external buffers.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct Built {
     pub bytes: Vec<u8>,
     pub files: Files,
 }
@@ -317,7 +317,7 @@ impl GltfBuilder {
     }
 
     /// The finished files.
-    pub fn build(&self) -> Model {
+    pub fn build(&self) -> Built {
         let text = self.json();
         let files = match self.packing {
             Packing::External => {
@@ -338,7 +338,7 @@ impl GltfBuilder {
             }
             Packing::DataUri | Packing::External => text.into_bytes(),
         };
-        Model { bytes, files }
+        Built { bytes, files }
     }
 
     fn buffer(&self, index: usize, bytes: &[u8]) -> String {

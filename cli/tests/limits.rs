@@ -4,14 +4,14 @@
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
 #[allow(dead_code)] // a part of it is enough here
-#[path = "suite/support/gltf_builder.rs"]
+#[path = "../../tests/suite/support/gltf_builder.rs"]
 mod gltf_builder;
 
 use glam::DVec3;
 use gltf_builder::{Component, GltfBuilder, Layout, Packing, primitive};
-use meshmark::document::MAX_UNBACKED;
-use meshmark::mesh::{Mesh, shapes};
-use meshmark::scene::to_glb;
+use meshmark::internals::document::MAX_UNBACKED;
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::to_glb;
 use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;

@@ -88,7 +88,7 @@ fn attacks_are_listed_and_made_by_their_names() {
     assert_eq!(code, Some(0));
     assert_eq!(report["steps"][0], "simplify 50 %");
     assert_eq!(report["seed"], 7);
-    let rms = report["quality"]["rms_rel"].as_f64().unwrap();
+    let rms = report["quality"]["rmsRel"].as_f64().unwrap();
     assert!((1e-5..1e-2).contains(&rms), "{rms}");
     let (_, inspected, _) = folder.run("inspect attacked.glb");
     assert_eq!(inspected["vertices"], report["vertices"]);
@@ -108,7 +108,7 @@ fn cli_embeds_and_extracts() {
     assert_eq!(code, 0);
     assert_eq!(report["tag"], "ADA-1");
     assert_eq!(report["vertices"], 12_002);
-    assert_eq!(report["read_back"]["verdict"], "found");
+    assert_eq!(report["readBack"]["verdict"], "found");
     for stage in ["read", "embed", "write", "measure", "test", "forecast"] {
         assert!(
             report["ms"][stage].is_number(),
@@ -121,7 +121,7 @@ fn cli_embeds_and_extracts() {
         (0, &"found".into(), &"ADA-1".into())
     );
     assert_eq!(report["input"], "model");
-    assert!(report["ln_p"].as_f64().unwrap() < -100.0);
+    assert!(report["lnP"].as_f64().unwrap() < -100.0);
     assert_eq!(report["carriers"][0]["name"], "solid");
     assert_eq!(report["carriers"][0]["tag"], "ADA-1");
     assert!(
@@ -134,12 +134,12 @@ fn cli_embeds_and_extracts() {
     let other = "--owner Ada --passphrase-file other.txt";
     let (code, report, _) = here.run(&format!("extract marked.glb {other}"));
     assert_eq!((code, &report["verdict"]), (1, &"none".into()));
-    for name in ["ln_p", "agreement", "carriers"] {
+    for name in ["lnP", "agreement", "carriers"] {
         assert_eq!(report.get(name), None, "{name} follows the key");
     }
     let (code, report, _) = here.run(&format!("extract marked.glb {other} --details"));
     assert_eq!((code, &report["verdict"]), (1, &"none".into()));
-    assert!(report["carriers"][1]["owned_addresses"].is_number());
+    assert!(report["carriers"][1]["ownedAddresses"].is_number());
     let (code, report, _) = here.run(&format!("verify marked.glb {ADA} --tag ADA-1"));
     assert_eq!((code, &report["verdict"]), (0, &"found".into()));
     let (code, report, _) = here.run(&format!("verify marked.glb {ADA} --number 7"));
@@ -218,8 +218,8 @@ fn cli_tests_a_list_of_keys() {
     fs::write(here.path("keys.txt"), list).unwrap();
     let (code, report, _) = here.run("test marked.mmev --evidence --keys keys.txt");
     assert_eq!((code, &report["input"]), (0, &"evidence".into()));
-    assert_eq!(report["num_keys"], 2);
-    assert_eq!(report["ln_charge"], libm::log(2.0));
+    assert_eq!(report["numKeys"], 2);
+    assert_eq!(report["lnCharge"], libm::log(2.0));
     let keys = report["keys"].as_array().unwrap();
     assert_eq!(keys[0]["key"], "Ada");
     assert_eq!(
@@ -310,12 +310,12 @@ fn cli_writes_and_reads_a_note() {
         (&"Kallisto".into(), &64.into())
     );
     assert_eq!(report["capacity"]["characters"], 29);
-    assert!(report["rms_rel"].as_f64().unwrap() < 0.001);
-    assert_eq!(report["read_back"]["verdict"], "found");
+    assert!(report["rmsRel"].as_f64().unwrap() < 0.001);
+    assert_eq!(report["readBack"]["verdict"], "found");
     here.run(&format!("embed noted.glb marked.glb {ADA} --tag ADA-1"));
     let (code, report, _) = here.run(&format!("note read marked.glb {ADA}"));
     assert_eq!((code, &report["text"]), (0, &"Kallisto".into()));
-    assert!(report["ln_p"].as_f64().unwrap() < -100.0);
+    assert!(report["lnP"].as_f64().unwrap() < -100.0);
     let (code, report, _) = here.run(&format!("extract marked.glb {ADA}"));
     assert_eq!((code, &report["tag"]), (0, &"ADA-1".into()));
 
@@ -340,8 +340,12 @@ fn cli_writes_and_reads_a_note() {
 #[test]
 fn cli_studies() {
     let here = Folder::new("study");
-    let pebble = meshmark::mesh::shapes::asteroid(30, 45);
-    fs::write(here.path("pebble.glb"), meshmark::scene::to_glb(&pebble)).unwrap();
+    let pebble = meshmark::internals::mesh::shapes::asteroid(30, 45);
+    fs::write(
+        here.path("pebble.glb"),
+        meshmark::internals::scene::to_glb(&pebble),
+    )
+    .unwrap();
     let (code, report, said) = here.run("study pebble.glb --keys 1 --seed 3");
     assert_eq!(code, 0, "{report} {said}");
     assert_eq!(
@@ -351,8 +355,8 @@ fn cli_studies() {
     let table = report["table1"].as_array().unwrap();
     assert_eq!(table.len(), 3);
     assert_eq!(table[0]["rules"][0]["random"]["mean"], 1352.0);
-    assert_eq!(table[1]["num_vertices"], 1352 + 2700 + 4050);
-    let errors = report["figure5"]["against_smoothing"].as_array().unwrap();
+    assert_eq!(table[1]["numVertices"], 1352 + 2700 + 4050);
+    let errors = report["figure5"]["againstSmoothing"].as_array().unwrap();
     let payload = |hosts: &str, finding: &str| {
         let mut here = errors.iter().filter(|errors| errors["iterations"] == 0);
         let errors = here.find(|errors| errors["hosts"] == hosts && errors["finding"] == finding);
@@ -361,7 +365,7 @@ fn cli_studies() {
     assert_eq!(payload("collapse", "traced"), 0.0);
     assert_eq!(payload("all", "cells"), 0.0);
     assert!(payload("collapse", "ranked") > 0.25);
-    assert!(report["figure5"]["against_strength"][0]["strength"].is_number());
+    assert!(report["figure5"]["againstStrength"][0]["strength"].is_number());
 
     let (code, again, _) = here.run("study pebble.glb --keys 1 --seed 3");
     assert_eq!(
@@ -370,8 +374,12 @@ fn cli_studies() {
     );
     let (code, ..) = here.run("study pebble.glb --preparation crumple");
     assert_eq!(code, 2);
-    let small = meshmark::mesh::shapes::asteroid(8, 12);
-    fs::write(here.path("small.glb"), meshmark::scene::to_glb(&small)).unwrap();
+    let small = meshmark::internals::mesh::shapes::asteroid(8, 12);
+    fs::write(
+        here.path("small.glb"),
+        meshmark::internals::scene::to_glb(&small),
+    )
+    .unwrap();
     let (code, report, _) = here.run("study small.glb");
     assert_eq!(
         (code, &report["error"]["code"]),
@@ -389,7 +397,7 @@ fn cli_inspects() {
     );
     assert!(
         report["capacity"][0]["addresses"].as_u64()
-            > report["capacity"][0]["needed_addresses"].as_u64()
+            > report["capacity"][0]["neededAddresses"].as_u64()
     );
 }
 

@@ -1,0 +1,49 @@
+//! `meshmark embed`.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use crate::file::{open, store_all};
+use crate::owner::Owner;
+use crate::payload::PayloadArgument;
+use crate::report::Report;
+use clap::Args;
+use meshmark::{Carrier, EmbedOptions, Strength, embed};
+use std::path::PathBuf;
+
+/// Mark a model and read the mark back
+#[derive(Args)]
+pub struct Embed {
+    /// The model: .glb, or .gltf with its buffers beside it
+    input: PathBuf,
+    /// Where the marked model goes; changed buffers of a .gltf go beside it
+    output: PathBuf,
+    #[command(flatten)]
+    owner: Owner,
+    #[command(flatten)]
+    payload: PayloadArgument,
+    /// subtle, balanced, strong, or a fraction of the diagonal
+    #[arg(long, default_value = "balanced")]
+    strength: Strength,
+    /// Comma-separated
+    #[arg(long, value_delimiter = ',', default_value = "solid,ring", value_parser = carrier)]
+    carriers: Vec<Carrier>,
+}
+
+impl Embed {
+    pub fn run(self) -> Result<Report, Failure> {
+        let mut clock = Clock::new();
+        let (payload, key) = (self.payload.read()?, self.owner.key()?);
+        let options = EmbedOptions::default()
+            .with_strength(self.strength)
+            .with_carriers(self.carriers);
+        let host = open(&self.input)?;
+        let marked = embed(host.model(&mut clock), payload, &key, &options)?;
+        store_all(&self.input, &self.output, &marked.model, &marked.files)?;
+        Report::done(&marked.report, clock)
+    }
+}
+
+fn carrier(name: &str) -> Result<Carrier, String> {
+    let known = || Carrier::ALL.map(Carrier::name).join(", ");
+    Carrier::from_name(name).ok_or_else(|| format!("the carriers are: {}", known()))
+}

@@ -1,0 +1,107 @@
+//! Models and what lies beside them, from disk and back.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::Scene;
+use meshmark::{Files, Model, file_names};
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+/// What evidence begins with. A file is not read as evidence because it begins so: a suspect's maker would choose how it is judged.
+const EVIDENCE: &[u8] = b"MMEV";
+
+/// A model as it was found on disk.
+pub struct Opened {
+    bytes: Vec<u8>,
+    files: Files,
+}
+
+impl Opened {
+    /// To work on, watched by a clock.
+    pub fn model<'a>(&'a self, clock: &'a mut Clock) -> Model<'a> {
+        Model::new(&self.bytes)
+            .with_files(&self.files)
+            .with_progress(clock)
+    }
+
+    /// The mesh, as it is seen by whoever checks the model.
+    pub fn mesh(&self) -> Result<Mesh, Failure> {
+        let document = Document::read(&self.bytes, &self.files).map_err(Failure::of)?;
+        let scene = Scene::gather(&document).map_err(Failure::of)?;
+        Ok(scene.mesh)
+    }
+}
+
+/// A model and the external buffers that it names, which are looked for beside it.
+pub fn open(path: &Path) -> Result<Opened, Failure> {
+    let model = load(path)?;
+    if model.starts_with(EVIDENCE) {
+        return Err(Failure::NotAsked(path.to_owned()));
+    }
+    let mut files = Files::new();
+    let mut known = BTreeSet::new();
+    // A model that cannot be read names no files; whoever reads it next says what is wrong.
+    for uri in file_names(&model).unwrap_or_default() {
+        let buffer = sibling(path, &uri)?;
+        // A small model could have a large file loaded as often as it finds another name for it.
+        if let Ok(place) = buffer.canonicalize()
+            && !known.insert(place)
+        {
+            let words = format!("{uri:?} is the same file as another buffer's");
+            return Err(Failure::Words(words));
+        }
+        files.insert(uri, load(&buffer)?);
+    }
+    Ok(Opened {
+        bytes: model,
+        files,
+    })
+}
+
+/// A file beside another. A model's URIs are a stranger's words: they may not lead out of its folder.
+fn sibling(path: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
+    if !Path::new(name).components().all(inside) {
+        let words = format!("{name:?} lies outside of the model's folder");
+        return Err(Failure::Words(words));
+    }
+    Ok(path.parent().unwrap_or(Path::new("")).join(name))
+}
+
+/// Writes a changed model and its changed buffers, but never over the buffers of the input.
+pub fn store_all(input: &Path, output: &Path, model: &[u8], files: &Files) -> Result<(), Failure> {
+    let mut outputs = vec![(output.to_owned(), model)];
+    for (name, bytes) in files {
+        let buffer = sibling(output, name)?;
+        if same_file(&buffer, &sibling(input, name)?) {
+            let path = buffer.display();
+            let words =
+                format!("{path} would be overwritten: write the marked model to another folder");
+            return Err(Failure::Words(words));
+        }
+        outputs.push((buffer, bytes));
+    }
+    outputs
+        .iter()
+        .try_for_each(|(path, bytes)| store(path, bytes))
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+pub fn load(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|error| Failure::file(path, error))
+}
+
+/// A file of UTF-8.
+pub fn load_text(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(load(path)?)
+        .map_err(|_| Failure::Words(format!("{} is not text in UTF-8", path.display())))
+}
+
+pub fn store(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    std::fs::write(path, bytes).map_err(|error| Failure::file(path, error))
+}

@@ -1,0 +1,77 @@
+//! The command line: what scripts and servers use. JSON on stdout; progress and errors on stderr.
+//!
+//! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input.
+
+mod attack;
+mod attacks;
+mod clock;
+mod embed;
+mod extract;
+mod failure;
+mod file;
+mod inspect;
+mod measure;
+mod note;
+mod owner;
+mod payload;
+mod report;
+mod study;
+mod suspect;
+mod test;
+mod verify;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use report::Report;
+use std::process::ExitCode;
+
+/// Invisible, keyed, robust watermarks in the geometry of glTF models
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Embed(embed::Embed),
+    Extract(extract::Extract),
+    Verify(verify::Verify),
+    Measure(measure::Measure),
+    Test(test::Test),
+    /// Write a text into a model, or read it: up to 29 characters. A mark goes on top, so after the note
+    #[command(subcommand)]
+    Note(note::Note),
+    Attack(attack::Attack),
+    Attacks(attacks::Attacks),
+    Inspect(inspect::Inspect),
+    Study(study::Study),
+}
+
+impl Command {
+    fn run(self) -> Result<Report, Failure> {
+        match self {
+            Command::Embed(command) => command.run(),
+            Command::Extract(command) => command.run(),
+            Command::Verify(command) => command.run(),
+            Command::Measure(command) => command.run(),
+            Command::Test(command) => command.run(),
+            Command::Note(command) => command.run(),
+            Command::Attack(command) => command.run(),
+            Command::Attacks(command) => command.run(),
+            Command::Inspect(command) => command.run(),
+            Command::Study(command) => command.run(),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command.run() {
+        Ok(report) => report.tell(),
+        Err(failure) => failure.tell(),
+    }
+}

@@ -1,0 +1,58 @@
+//! `meshmark note`.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use crate::file::{open, store_all};
+use crate::owner::Owner;
+use crate::report::Report;
+use clap::Subcommand;
+use meshmark::{embed_note, read_note};
+use std::path::PathBuf;
+
+#[derive(Subcommand)]
+pub enum Note {
+    /// Write a text and read it back
+    Embed {
+        /// The model: .glb, or .gltf with its buffers beside it
+        input: PathBuf,
+        /// 1 to 29 bytes of UTF-8; fewer in models of less than 8192 vertices
+        #[arg(long)]
+        text: String,
+        /// Where the model with the note goes; changed buffers of a .gltf go beside it
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+    },
+    /// Read the note of a key
+    Read {
+        /// .glb or .gltf
+        input: PathBuf,
+        #[command(flatten)]
+        owner: Owner,
+    },
+}
+
+impl Note {
+    pub fn run(self) -> Result<Report, Failure> {
+        let mut clock = Clock::new();
+        match self {
+            Note::Embed {
+                input,
+                text,
+                output,
+                owner,
+            } => {
+                let key = owner.key()?;
+                let noted = embed_note(open(&input)?.model(&mut clock), &text, &key)?;
+                store_all(&input, &output, &noted.model, &noted.files)?;
+                Report::done(&noted.report, clock)
+            }
+            Note::Read { input, owner } => {
+                let key = owner.key()?;
+                let reading = read_note(open(&input)?.model(&mut clock), &key)?;
+                Report::judged(&reading, reading.verdict, clock)
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Whose mark.
+
+use crate::failure::Failure;
+use crate::file::{load, load_text};
+use clap::Args;
+use meshmark::Key;
+use std::path::PathBuf;
+
+/// Whose mark. Without a passphrase file or key file, MESHMARK_PASSPHRASE is used, or the passphrase is asked for.
+#[derive(Args)]
+pub struct Owner {
+    /// The owner's name, which with the passphrase makes the key
+    #[arg(long, value_name = "NAME", required_unless_present = "key_file")]
+    owner: Option<String>,
+    /// File that holds the passphrase (one line end at its end is dropped)
+    #[arg(long, value_name = "FILE", conflicts_with = "key_file")]
+    passphrase_file: Option<PathBuf>,
+    /// File of 32 bytes that is the key, instead of owner and passphrase
+    #[arg(long, value_name = "FILE", conflicts_with = "owner")]
+    key_file: Option<PathBuf>,
+}
+
+impl Owner {
+    pub fn key(&self) -> Result<Key, Failure> {
+        let key = match (&self.key_file, &self.owner) {
+            (Some(file), _) => Key::from_bytes(&load(file)?),
+            (None, owner) => {
+                Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?)
+            }
+        };
+        key.map_err(Failure::of)
+    }
+
+    fn passphrase(&self) -> Result<String, Failure> {
+        if let Some(file) = &self.passphrase_file {
+            let text = load_text(file)?;
+            let text = text.strip_suffix('\n').unwrap_or(&text);
+            return Ok(text.strip_suffix('\r').unwrap_or(text).to_owned());
+        }
+        match std::env::var("MESHMARK_PASSPHRASE") {
+            Ok(passphrase) => Ok(passphrase),
+            Err(_) => rpassword::prompt_password("Passphrase: ")
+                .map_err(|error| Failure::Words(format!("the passphrase: {error}"))),
+        }
+    }
+}

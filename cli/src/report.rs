@@ -1,0 +1,62 @@
+//! What a command prints, and how it exits.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use meshmark::Verdict;
+use serde::Serialize;
+use serde_json::Value;
+use std::io::{Write, stdout};
+use std::process::ExitCode;
+
+const FOUND: u8 = 0;
+const NOT_FOUND: u8 = 1;
+pub const CANNOT_CHECK: u8 = 2;
+
+/// A report and an exit code.
+pub struct Report {
+    json: Value,
+    code: u8,
+}
+
+impl Report {
+    /// What was done, with the milliseconds of each stage.
+    pub fn done(report: &impl Serialize, clock: Clock) -> Result<Report, Failure> {
+        let mut json = serde_json::to_value(report)?;
+        if let Value::Object(fields) = &mut json {
+            fields.insert("ms".to_owned(), clock.milliseconds());
+        }
+        Ok(Report { json, code: FOUND })
+    }
+
+    /// What was read, with an exit code that says whether anything was found.
+    pub fn judged(
+        report: &impl Serialize,
+        verdict: Verdict,
+        clock: Clock,
+    ) -> Result<Report, Failure> {
+        let code = match verdict {
+            Verdict::Found => FOUND,
+            Verdict::CannotCheck => CANNOT_CHECK,
+            _ => NOT_FOUND,
+        };
+        Ok(Report {
+            code,
+            ..Report::done(report, clock)?
+        })
+    }
+
+    /// What took no time.
+    pub fn list(json: Value) -> Report {
+        Report { json, code: FOUND }
+    }
+
+    pub fn tell(&self) -> ExitCode {
+        print(&self.json);
+        ExitCode::from(self.code)
+    }
+}
+
+/// Prints a report. Whoever closes the pipe has read enough.
+pub fn print(report: &Value) {
+    let _ = writeln!(stdout(), "{report:#}");
+}

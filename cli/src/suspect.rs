@@ -1,0 +1,71 @@
+//! What is read, and what is told of it.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use crate::file::{load, open};
+use crate::report::Report;
+use clap::Args;
+use meshmark::{Evidence, Extraction, Input, Key, Payload, detect, extract, measure, verify};
+use std::path::PathBuf;
+
+/// What is read.
+#[derive(Args)]
+pub struct Suspect {
+    /// .glb or .gltf
+    input: PathBuf,
+    /// INPUT is no model but a file that `measure` wrote: only where you trust who wrote it
+    #[arg(long)]
+    evidence: bool,
+}
+
+impl Suspect {
+    /// Reads a model, or what was measured of one, with a key.
+    pub fn examine(
+        &self,
+        key: &Key,
+        expected: Option<Payload>,
+        clock: &mut Clock,
+    ) -> Result<Extraction, Failure> {
+        if !self.evidence {
+            return Ok(detect(open(&self.input)?.model(clock), key, expected)?);
+        }
+        let evidence = self.stored()?;
+        clock.start("test");
+        Ok(match expected {
+            Some(payload) => verify(&evidence, key, payload),
+            None => extract(&evidence, key),
+        })
+    }
+
+    /// The evidence, measured here where the suspect is a model.
+    pub fn measured(&self, clock: &mut Clock) -> Result<(Evidence, Input), Failure> {
+        if self.evidence {
+            return Ok((self.stored()?, Input::Evidence));
+        }
+        let evidence = measure(open(&self.input)?.model(clock))?;
+        Ok((evidence, Input::Model))
+    }
+
+    fn stored(&self) -> Result<Evidence, Failure> {
+        Evidence::from_bytes(&load(&self.input)?).map_err(Failure::of)
+    }
+}
+
+/// What is told where nothing is found.
+#[derive(Args)]
+pub struct Telling {
+    /// Say how far each carrier agrees, whatever the verdict is. For the key's owner: dithers can be read off it
+    #[arg(long)]
+    details: bool,
+}
+
+impl Telling {
+    pub fn of(&self, extraction: Extraction, clock: Clock) -> Result<Report, Failure> {
+        let verdict = extraction.verdict;
+        let told = match self.details {
+            true => extraction.with_details(),
+            false => extraction,
+        };
+        Report::judged(&told, verdict, clock)
+    }
+}

@@ -1,0 +1,31 @@
+//! `meshmark verify`.
+
+use crate::clock::Clock;
+use crate::failure::Failure;
+use crate::owner::Owner;
+use crate::payload::PayloadArgument;
+use crate::report::Report;
+use crate::suspect::{Suspect, Telling};
+use clap::Args;
+
+/// Test a model, or measured evidence, for an expected payload
+#[derive(Args)]
+pub struct Verify {
+    #[command(flatten)]
+    suspect: Suspect,
+    #[command(flatten)]
+    owner: Owner,
+    #[command(flatten)]
+    payload: PayloadArgument,
+    #[command(flatten)]
+    telling: Telling,
+}
+
+impl Verify {
+    pub fn run(self) -> Result<Report, Failure> {
+        let mut clock = Clock::new();
+        let (payload, key) = (self.payload.read()?, self.owner.key()?);
+        let extraction = self.suspect.examine(&key, Some(payload), &mut clock)?;
+        self.telling.of(extraction, clock)
+    }
+}

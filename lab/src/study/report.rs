@@ -372,7 +372,7 @@ fn smoothings(text: &mut String, outcomes: &[&Outcome]) -> (String, String) {
         "\n## Every smoothing\n\n\
          Simplified meshes. *Moved*: RMS displacement of the vertices that were there before, in percent of the diagonal, median of the models; the mark's own \
          is 0.08. BER: of the payload, mean of all models and keys. Note, SOLID and RING are this project's: a note is cells with a step of its own, read \
-         by `note::read`; SOLID and RING are embedded alone at *strong*, and read by `detect`. Of each: in how many models it was read rightly, and the median of \
+         by `read_note`; SOLID and RING are embedded alone at *strong*, and read by `detect`. Of each: in how many models it was read rightly, and the median of \
          ln p. One iteration: half a step of the umbrella operator or of its square; mean curvature flow for half a squared mean edge; Taubin's 0.5 and -0.53; \
          one round of the mean filter of eqs 2 to 4; one subdivision.\n\n\
          ![What is read after every smoothing](study/smoothings.svg)\n\n\

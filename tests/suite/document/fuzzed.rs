@@ -107,7 +107,7 @@ fn exercise(model: &Built) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 5000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 5000, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_files_do_no_harm(case in any::<Index>(), damages in proptest::collection::vec(damage(), 1..4)) {

@@ -1,0 +1,53 @@
+//! Writes what the fuzzer starts from: `cargo run --manifest-path fuzz/Cargo.toml --bin seeds`, in the project's folder.
+
+#[allow(dead_code)] // a part of it is enough here
+#[path = "../tests/suite/support/mod.rs"]
+mod support;
+
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::to_glb;
+use meshmark::{Key, measure};
+use std::fs;
+use std::path::Path;
+use support::fixtures::{gallery, marked};
+use support::gltf_builder::Packing;
+
+fn main() -> std::io::Result<()> {
+    let small = to_glb(&shapes::asteroid(6, 8));
+    write("document", "asteroid.glb", &small)?;
+    write("document", "gallery.gltf", &gallery(Packing::DataUri).bytes)?;
+    write("document", "gallery.glb", &gallery(Packing::Glb).bytes)?;
+    let evidence = |mesh: &Mesh| {
+        let evidence = measure(&to_glb(mesh)).expect("a model of ours");
+        evidence.to_bytes()
+    };
+    write(
+        "evidence",
+        "asteroid.mmev",
+        &evidence(&shapes::asteroid(12, 16)),
+    )?;
+    let key = Key::from_bytes(&[1; Key::BYTES]).expect("32 bytes");
+    let host = to_glb(&shapes::asteroid(20, 30));
+    let marked = marked(&host, &key)
+        .expect("a model that can be marked")
+        .model;
+    let evidence = measure(&marked).expect("a model of ours").to_bytes();
+    write("evidence", "marked.mmev", &evidence)?;
+    write("round_trip", "large", &[29, 39])?;
+    write(
+        "round_trip",
+        "holed",
+        &[20, 25, 0, 9, 7, 0, 0, 30, 7, 0, 1, 2, 0, 160],
+    )?;
+    write(
+        "round_trip",
+        "spiked",
+        &[15, 15, 0, 9, 1, 250, 0, 30, 4, 0, 0, 40, 6, 0],
+    )
+}
+
+fn write(target: &str, name: &str, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = Path::new("fuzz/seeds").join(target);
+    fs::create_dir_all(&folder)?;
+    fs::write(folder.join(name), bytes)
+}

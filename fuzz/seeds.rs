@@ -4,9 +4,11 @@
 #[path = "../tests/suite/support/mod.rs"]
 mod support;
 
-use meshmark::internals::mesh::{Mesh, shapes};
-use meshmark::internals::scene::to_glb;
-use meshmark::{Key, measure};
+use meshmark::internals::carrier::{Measurement, ring, solid};
+use meshmark::internals::document::Document;
+use meshmark::internals::mesh::shapes;
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{Evidence, Files, Key};
 use std::fs;
 use std::path::Path;
 use support::fixtures::{gallery, marked};
@@ -17,22 +19,28 @@ fn main() -> std::io::Result<()> {
     write("document", "asteroid.glb", &small)?;
     write("document", "gallery.gltf", &gallery(Packing::DataUri).bytes)?;
     write("document", "gallery.glb", &gallery(Packing::Glb).bytes)?;
-    let evidence = |mesh: &Mesh| {
-        let evidence = measure(&to_glb(mesh)).expect("a model of ours");
-        evidence.to_bytes()
-    };
-    write(
-        "evidence",
-        "asteroid.mmev",
-        &evidence(&shapes::asteroid(12, 16)),
-    )?;
-    let key = Key::from_bytes(&[1; Key::BYTES]).expect("32 bytes");
-    let host = to_glb(&shapes::asteroid(20, 30));
-    let marked = marked(&host, &key)
+    let (host, key) = (
+        shapes::asteroid(20, 30),
+        Key::from_bytes(&[1; Key::BYTES]).expect("32 bytes"),
+    );
+    let marked = marked(&to_glb(&host), &key)
         .expect("a model that can be marked")
         .model;
-    let evidence = measure(&marked).expect("a model of ours").to_bytes();
-    write("evidence", "marked.mmev", &evidence)?;
+    let document = Document::read(&marked, &Files::new()).expect("a model of ours");
+    let mesh = Scene::gather(&document).expect("a model of ours").mesh;
+    let rings = Measurement::Ring(ring::Measurement::new(&mesh));
+    write(
+        "evidence",
+        "rings.mmev",
+        &Evidence::from_iter([rings]).to_bytes(),
+    )?;
+    // Of all its surfaces, the suspect's own: with the others evidence has megabytes.
+    let surface = Measurement::Solid(solid::Surfaces::new(&mesh).plain().collect());
+    write(
+        "evidence",
+        "surface.mmev",
+        &Evidence::from_iter([surface]).to_bytes(),
+    )?;
     write("round_trip", "large", &[29, 39])?;
     write(
         "round_trip",

@@ -87,7 +87,6 @@ fn stages(criterion: &mut Criterion) {
         key: &key,
         codeword: &Codeword::new(Checked::new(&key).message(payload)),
     };
-    let suspect: solid::Measurement = solid::Surfaces::new(&mesh).take(1).collect();
 
     let mut group = criterion.benchmark_group(format!("stages, {} vertices", mesh.positions.len()));
     group
@@ -116,9 +115,6 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("SOLID: measure all surfaces", |b| {
         b.iter(|| solid::Surfaces::new(&mesh).count())
     });
-    group.bench_function("SOLID: tabulate a surface", |b| {
-        b.iter(|| suspect.clone().for_many_keys())
-    });
     group.bench_function("SOLID: embed", |b| {
         b.iter(|| Carrier::Solid.embed(&host, &mark, &mut ignore))
     });
@@ -137,7 +133,6 @@ fn stages(criterion: &mut Criterion) {
 fn one_more_key(criterion: &mut Criterion) {
     let mesh = shapes::asteroid(60, 90);
     let suspect: solid::Measurement = solid::Surfaces::new(&mesh).take(1).collect();
-    let tables = suspect.clone().for_many_keys();
     let reading = suspect.read(&key(1), &mut ignore).expect("not cancelled");
     let first = reading.hypotheses.first().expect("a way of reading");
     // A third of the probability of a false alarm is shared by the ways of reading the suspect as it is.
@@ -153,13 +148,6 @@ fn one_more_key(criterion: &mut Criterion) {
         b.iter_batched(
             &mut next,
             |key| suspect.read(&key, &mut ignore),
-            BatchSize::SmallInput,
-        )
-    });
-    group.bench_function("of a list", |b| {
-        b.iter_batched(
-            &mut next,
-            |key| tables.read(&key, &mut ignore),
             BatchSize::SmallInput,
         )
     });

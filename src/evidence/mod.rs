@@ -70,14 +70,6 @@ impl Evidence {
         }
     }
 
-    /// The same evidence, made ready for a list of keys: see [`solid::Measurement::for_many_keys`].
-    pub fn for_many_keys(self) -> Evidence {
-        Evidence {
-            solid: self.solid.for_many_keys(),
-            ..self
-        }
-    }
-
     /// The evidence as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = [MAGIC.as_slice(), &VERSION.to_le_bytes()].concat();

@@ -3,14 +3,13 @@
 use crate::support::fixtures::key;
 use glam::DVec3;
 use meshmark::attack::{crop, noise, quantize, reorder, similarity, smooth, smooth_inside};
-use meshmark::carrier::solid::{Measurement, Surfaces, num_windows};
+use meshmark::carrier::solid::{Measurement, num_windows};
 use meshmark::carrier::{Carrier, Host, Mark, StoredError};
-use meshmark::code::{Codeword, SoftSymbol, Symbol};
+use meshmark::code::Codeword;
 use meshmark::detection::Statistic;
 use meshmark::geometry::{Distortion, diagonal};
 use meshmark::ignore;
 use meshmark::mesh::{Admissible, Mesh, shapes};
-use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0f1_2345_6789_abcd;
@@ -217,43 +216,6 @@ fn solid_measurement_is_its_bytes() {
         Err(StoredError::Damaged)
     );
     assert!(bytes.len() < 2_000_000);
-}
-
-/// Where both readings see a window, the RMS distance of their phases is below 2 % of the quantizer's step. A distance is what
-/// the cosines show of it: never more than it is.
-#[wasm_bindgen_test(unsupported = test)]
-fn solid_tables_err_by_less_than_two_percent_of_a_step() {
-    for (shape, rms_rel) in [
-        (rock(), 0.0002),
-        (shapes::cad_part(), 0.0002),
-        (shapes::game_asset(), 0.0004),
-    ] {
-        let measurement: Measurement = Surfaces::new(&marked_at(&shape, 1, rms_rel))
-            .take(1)
-            .collect();
-        let [alone, tables] = [measurement.clone(), measurement.for_many_keys()].map(|m| {
-            let reading = m.read(&key(1), &mut ignore).unwrap();
-            reading.hypotheses.into_iter().next().unwrap().symbols
-        });
-        // Parities that occur once have one window: the two lists are of the same windows but for a few that hardly see anything.
-        let once = |list: &[SoftSymbol], symbol: Symbol| -> Option<f64> {
-            let mut same = list.iter().filter(|soft| soft.symbol == symbol);
-            let soft = same.next().filter(|_| same.next().is_none())?;
-            Some(libm::acos(soft.value / soft.weight) / TAU)
-        };
-        let parities = alone.iter().filter(|soft| soft.symbol != Symbol::Pilot);
-        let pairs = parities
-            .filter_map(|soft| Some((once(&alone, soft.symbol)?, once(&tables, soft.symbol)?)));
-        let distances: Vec<f64> = pairs.map(|(exact, tabled)| tabled - exact).collect();
-        assert!(
-            2 * distances.len() > alone.len(),
-            "{} of {} windows are in both",
-            distances.len(),
-            alone.len()
-        );
-        let square = distances.iter().map(|d| d * d).sum::<f64>() / distances.len() as f64;
-        assert!(square.sqrt() < 0.02, "{} steps at {rms_rel}", square.sqrt());
-    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -9,7 +9,7 @@ use super::address::{self, AddressKind, NEEDED_ADDRESSES, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Measurement, Owned, Ownership, STEP};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
-use crate::geometry::{Pose, conjugate_gradients, diagonal, vertex_normals};
+use crate::geometry::{Pose, conjugate_gradients, diagonal, unconditioned, vertex_normals};
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 use glam::DVec3;
@@ -244,7 +244,15 @@ impl<'a> Linearization<'a> {
             y
         };
         let target = weighted(&mut goals.iter().map(|goal| goal.change));
-        let scaled = conjugate_gradients(normal, target, CG_TOLERANCE, CG_STEPS);
+        let mut scaled = vec![0.0; target.len()];
+        conjugate_gradients(
+            normal,
+            unconditioned,
+            &target,
+            &mut scaled,
+            CG_TOLERANCE,
+            CG_STEPS,
+        );
         scaled
             .iter()
             .zip(&self.units)

@@ -3,13 +3,13 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use meshmark::attack::{simplify, smooth};
-use meshmark::carrier::osveta::{Ranking, rank};
 use meshmark::carrier::{Carrier, Host, Mark, ring, solid};
 use meshmark::code::{Checked, Codeword, decode};
 use meshmark::document::Document;
 use meshmark::geometry::spectral::{self, InverseFilter};
 use meshmark::geometry::{Pose, outward, roughness};
 use meshmark::mesh::{Admissible, Edges, shapes};
+use meshmark::paper::{Ranking, rank};
 use meshmark::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Evidence, Files, Key, Payload, embed, extract, ignore};
 

@@ -34,10 +34,10 @@ pub mod geometry;
 pub mod key;
 pub mod mesh;
 mod order;
+pub mod paper;
 mod progress;
 mod random;
 pub mod scene;
-pub mod study;
 mod watermark;
 
 #[cfg(target_arch = "wasm32")]

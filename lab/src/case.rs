@@ -1,11 +1,10 @@
 //! One model, marked once: what every row of the grid starts from.
 
 use crate::baseline;
-use crate::models::{Class, Model};
+use crate::models::{Class, Model, gathered};
 use crate::seed::Seed;
-use meshmark::document::Document;
 use meshmark::mesh::Mesh;
-use meshmark::scene::{Scene, to_glb};
+use meshmark::scene::to_glb;
 use meshmark::{EmbedOptions, EmbedReport, Files, Key, Payload, Strength, embed, ignore};
 use std::sync::OnceLock;
 
@@ -120,11 +119,4 @@ impl<'a> Case<'a> {
         };
         self.baseline.get_or_init(embedded).as_ref()
     }
-}
-
-/// The mesh of a `.glb`, as it is seen by whoever checks it.
-pub fn gathered(bytes: &[u8]) -> Result<Mesh, String> {
-    let document = Document::read(bytes, &Files::new()).map_err(|error| error.to_string())?;
-    let scene = Scene::gather(&document).map_err(|error| error.to_string())?;
-    Ok(scene.mesh)
 }

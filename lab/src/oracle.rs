@@ -6,7 +6,7 @@
 use crate::seed::Seed;
 use meshmark::carrier::{ring, solid};
 use meshmark::code::{Checked, Codeword, Symbol};
-use meshmark::key::Prf;
+use meshmark::key::{Prf, unit};
 use meshmark::{Evidence, Extraction, Key, Payload, Verdict, extract, verify};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -186,7 +186,7 @@ struct Chance {
 impl Chance {
     fn unit(&mut self) -> f64 {
         self.drawn += 1;
-        (self.prf.at(self.drawn).0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(self.prf.at(self.drawn).0)
     }
 }
 

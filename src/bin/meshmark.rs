@@ -7,8 +7,8 @@ use meshmark::attack::{Attack, CATALOGUE, Step, chain, step};
 use meshmark::document::Document;
 use meshmark::geometry::Quality;
 use meshmark::mesh::Mesh;
+use meshmark::paper::{Preparation, study};
 use meshmark::scene::{Scene, to_glb};
-use meshmark::study::{Preparation, study};
 use meshmark::{
     Carrier, EmbedOptions, Error, Evidence, Extraction, Files, Input, Key, Payload, Progress,
     Stage, Strength, Verdict, detect, embed, extract, extract_many, inspect, measure, note, verify,

@@ -4,7 +4,8 @@
 //! codeword, `measure` takes from a mesh all that needs no key, and `read` turns a measurement and a key into soft symbols,
 //! one list for each hypothesis that it declares in advance.
 
-pub mod osveta;
+pub mod direction;
+pub mod qim;
 pub mod ring;
 pub mod solid;
 

@@ -24,6 +24,14 @@ pub struct Pose {
 const DEGENERATE: f64 = 0.98;
 
 impl Pose {
+    /// Half turns about the axes: what their signs leave open.
+    pub const HALF_TURNS: [DVec3; 4] = [
+        DVec3::new(1.0, 1.0, 1.0),
+        DVec3::new(1.0, -1.0, -1.0),
+        DVec3::new(-1.0, 1.0, -1.0),
+        DVec3::new(-1.0, -1.0, 1.0),
+    ];
+
     /// The pose of a mesh; `None` without area.
     pub fn of(mesh: &Mesh) -> Option<Pose> {
         let (mut total, mut first) = (0.0, DVec3::ZERO);

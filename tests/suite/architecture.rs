@@ -52,7 +52,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
         ],
     ),
     (
-        "study",
+        "paper",
         &[
             "attack",
             "carrier",

@@ -2,8 +2,8 @@
 //! suspect could swallow one. Every test of every way of reading is held against its own bound, at every decade.
 
 use glam::DVec3;
-use meshmark::carrier::osveta::Cells;
-use meshmark::carrier::osveta::cells::NUM_TESTS;
+use meshmark::carrier::direction::Cells;
+use meshmark::carrier::direction::NUM_TESTS;
 use meshmark::carrier::{Reading, ring, solid};
 use meshmark::code::{Block, Checked, Codeword, SoftSymbol, Symbol};
 use meshmark::detection::{Statistic, union};

@@ -21,33 +21,17 @@ fn model(name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Positions and polygons of a Wavefront .obj, polygons as fans.
+/// The surface of a Wavefront .obj of triangles.
 fn read_obj(path: &Path) -> Mesh {
-    let mut mesh = Mesh::default();
-    for line in std::fs::read_to_string(path).unwrap().lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => mesh.positions.push(DVec3::from_slice(
-                &words
-                    .take(3)
-                    .map(|w| w.parse().unwrap())
-                    .collect::<Vec<f64>>(),
-            )),
-            Some("f") => {
-                let corner =
-                    |word: &str| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                let corners: Vec<u32> = words.map(corner).collect();
-                mesh.triangles.extend(
-                    corners
-                        .windows(2)
-                        .skip(1)
-                        .map(|pair| [corners[0], pair[0], pair[1]]),
-                );
-            }
-            _ => {}
+    let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).unwrap();
+    Mesh::joined(models.into_iter().map(|model| {
+        let (positions, _) = model.mesh.positions.as_chunks();
+        let (triangles, _) = model.mesh.indices.as_chunks();
+        Mesh {
+            positions: positions.iter().copied().map(DVec3::from_array).collect(),
+            triangles: triangles.to_vec(),
         }
-    }
-    mesh
+    }))
 }
 
 #[test]

@@ -1,14 +1,15 @@
 //! docs/STUDY.md.
 
 use super::layers::{Layers, ORDERS};
-use super::measure::{Outcome, Read, Smoothed};
+use super::measure::{Outcome, Smoothed};
+use super::note::Read;
 use super::verdict::{counts, find, statements};
 use crate::plot::{Panel, Row, bars, grid, panels};
 use crate::report::median;
 use crate::seed::Seed;
-use meshmark::carrier::osveta::Ranking;
-use meshmark::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
-use meshmark::study::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
+use meshmark::paper::Ranking;
+use meshmark::paper::figure_5::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
+use meshmark::paper::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
 use std::fmt::Write;
 
 /// Hosts of the curves, in the order of their colours.
@@ -594,7 +595,7 @@ mod tests {
     use super::*;
     use meshmark::ignore;
     use meshmark::mesh::shapes;
-    use meshmark::study::study;
+    use meshmark::paper::study;
 
     /// A mesh that is just large enough; its marks are made up.
     fn outcome(name: &str) -> Outcome {

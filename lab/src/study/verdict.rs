@@ -1,9 +1,9 @@
 //! What the study is held against, and whether it is so.
 
 use super::measure::Outcome;
-use meshmark::carrier::osveta::Ranking;
-use meshmark::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH};
-use meshmark::study::{HostsRow, Rule, RuleCounts};
+use meshmark::paper::Ranking;
+use meshmark::paper::figure_5::{Errors, Figure5, Finding, Hosts, STRENGTH};
+use meshmark::paper::{HostsRow, Rule, RuleCounts};
 
 /// The paper's OSVETA over the chance of the index rule, in the mean: what the literal ranking has to match.
 const LITERAL: f64 = 1.27;

@@ -151,3 +151,8 @@ fn line(builder: &mut GltfBuilder) -> usize {
     let position = builder.positions(0, Layout::F32, &[[0.0; 3], [1.0; 3], [2.0, 0.0, 1.0]]);
     builder.mesh(&[primitive(position, None, 3)])
 }
+
+/// Uniform in [0, 1).
+pub fn random(address: u64) -> f64 {
+    key(7).prf("test").at(address).0 as f64 / 18_446_744_073_709_551_616.0
+}

@@ -1,10 +1,10 @@
 //! The study of errors, Fig. 5.
 
-use meshmark::carrier::osveta::{Barycentre, Ranking};
 use meshmark::ignore;
 use meshmark::mesh::{Mesh, shapes};
-use meshmark::study::errors::{Case, Errors, Finding, Hosts, errors, figure_5};
-use meshmark::study::{Smoothing, Spread};
+use meshmark::paper::figure_5::{Case, Errors, Finding, Hosts, errors, figure_5};
+use meshmark::paper::{Barycentre, Ranking};
+use meshmark::paper::{Smoothing, Spread};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn pebble() -> Mesh {

@@ -1,10 +1,10 @@
 //! The study of the seed paper: hosts found again.
 
-use meshmark::carrier::osveta::{Ranking, rank};
 use meshmark::mesh::{Mesh, shapes};
-use meshmark::study::{
+use meshmark::paper::{
     HostsOptions, HostsRow, Preparation, Rule, RuleCounts, Smoothing, fields, hosts, trace,
 };
+use meshmark::paper::{Ranking, rank};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A mesh of 3000 faces, as the paper's was made.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use meshmark::attack::{reorder, similarity};
-use meshmark::carrier::osveta::{Ranking, Stability, rank};
 use meshmark::mesh::{Edges, Mesh, shapes};
+use meshmark::paper::{Ranking, Stability, rank};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn is_decreasing(found: &Stability) -> bool {

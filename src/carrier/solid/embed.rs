@@ -11,13 +11,13 @@ use super::pitch::{AREAS, AREAS_TO_EMBED, pitches};
 use super::problem::Problem;
 use super::quantizer::{cosine, steps_for};
 use super::window::{Window, windows};
+use crate::carrier::qim::curvature;
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::detection::Statistic;
 use crate::geometry::{Pose, diagonal, oriented};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
 
 const ROUNDS: usize = 8;
 /// Weight that is left to a window half a step from its lattice.
@@ -306,13 +306,7 @@ fn exponent(phases: &[f64], active: &[Window]) -> f64 {
     -Statistic::new(phases.iter().zip(active).map(read)).ln_p()
 }
 
-/// The weight of a window in the quadratic that touches its cosine from above at an error and has its minimum at 0.
+/// The weight of a window in a round: that of its parabola.
 fn majorised((error, window): (f64, &Window)) -> f64 {
-    let angle = TAU * error.abs();
-    let curvature = if angle > 0.0 {
-        libm::sin(angle) / angle
-    } else {
-        1.0
-    };
-    window.weight * curvature.max(LEAST_WEIGHT)
+    window.weight * curvature(error).max(LEAST_WEIGHT)
 }

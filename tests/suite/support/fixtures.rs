@@ -1,6 +1,7 @@
 //! Generated models, keys and payloads.
 
 use super::gltf_builder::{Component, GltfBuilder, Layout, Model, Packing, primitive};
+use glam::DVec3;
 use meshmark::mesh::{Mesh, shapes};
 use meshmark::{EmbedOptions, Embedding, Error, Files, Key, Payload, embed, ignore};
 
@@ -155,4 +156,27 @@ fn line(builder: &mut GltfBuilder) -> usize {
 /// Uniform in [0, 1).
 pub fn random(address: u64) -> f64 {
     key(7).prf("test").at(address).0 as f64 / 18_446_744_073_709_551_616.0
+}
+
+/// A box of twelve triangles, from the origin on.
+pub fn cuboid(sides: DVec3) -> Mesh {
+    let corner = |v: u32| {
+        let side = |axis: usize| f64::from(v >> axis & 1) * sides[axis];
+        DVec3::new(side(0), side(1), side(2))
+    };
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    Mesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
+    }
 }

@@ -3,13 +3,13 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use meshmark::internals::attack::{simplify, smooth};
-use meshmark::internals::carrier::osveta::{Ranking, rank};
 use meshmark::internals::carrier::{Carrier, Host, Mark, ring, solid};
 use meshmark::internals::code::{Checked, Codeword, decode};
 use meshmark::internals::document::Document;
 use meshmark::internals::geometry::spectral::{self, InverseFilter};
 use meshmark::internals::geometry::{Pose, outward, roughness};
 use meshmark::internals::mesh::{Admissible, Edges, shapes};
+use meshmark::internals::paper::{Ranking, rank};
 use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract};
@@ -101,7 +101,6 @@ fn stages(criterion: &mut Criterion) {
         key: &key,
         codeword: &Codeword::new(Checked::new(&key).message(payload)),
     };
-    let suspect: solid::Measurement = solid::Surfaces::new(&mesh).take(1).collect();
 
     let mut group = criterion.benchmark_group(format!("stages, {} vertices", mesh.positions.len()));
     group
@@ -130,9 +129,6 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("SOLID: measure all surfaces", |b| {
         b.iter(|| solid::Surfaces::new(&mesh).count())
     });
-    group.bench_function("SOLID: tabulate a surface", |b| {
-        b.iter(|| suspect.clone().for_many_keys())
-    });
     group.bench_function("SOLID: embed", |b| {
         b.iter(|| Carrier::Solid.embed(&host, &mark, &mut ignore))
     });
@@ -151,7 +147,6 @@ fn stages(criterion: &mut Criterion) {
 fn one_more_key(criterion: &mut Criterion) {
     let mesh = shapes::asteroid(60, 90);
     let suspect: solid::Measurement = solid::Surfaces::new(&mesh).take(1).collect();
-    let tables = suspect.clone().for_many_keys();
     let reading = suspect.read(&key(1), &mut ignore).expect("not cancelled");
     let first = reading.hypotheses.first().expect("a way of reading");
     // A third of the probability of a false alarm is shared by the ways of reading the suspect as it is.
@@ -167,13 +162,6 @@ fn one_more_key(criterion: &mut Criterion) {
         b.iter_batched(
             &mut next,
             |key| suspect.read(&key, &mut ignore),
-            BatchSize::SmallInput,
-        )
-    });
-    group.bench_function("of a list", |b| {
-        b.iter_batched(
-            &mut next,
-            |key| tables.read(&key, &mut ignore),
             BatchSize::SmallInput,
         )
     });

@@ -37,10 +37,10 @@ mod geometry;
 mod key;
 mod mesh;
 mod order;
+mod paper;
 mod progress;
 mod random;
 mod scene;
-mod study;
 mod watermark;
 
 #[cfg(feature = "unstable-internals")]

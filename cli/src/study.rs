@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::file::open;
 use crate::report::Report;
 use clap::Args;
-use meshmark::internals::study::{Preparation, study};
+use meshmark::internals::paper::{Preparation, study};
 use std::path::PathBuf;
 
 /// Repeat the seed paper's study on a model of at most 11732 faces: what is found again after smoothing

@@ -1,12 +1,11 @@
 //! One model, marked once: what every row of the grid starts from.
 
 use crate::baseline;
-use crate::models::{Class, Model};
+use crate::models::{Class, Model, gathered};
 use crate::seed::Seed;
-use meshmark::internals::document::Document;
 use meshmark::internals::mesh::Mesh;
-use meshmark::internals::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, EmbedReport, Files, Key, Payload, Strength, embed};
+use meshmark::internals::scene::to_glb;
+use meshmark::{EmbedOptions, EmbedReport, Key, Payload, Strength, embed};
 use std::sync::OnceLock;
 
 /// Bits of the baseline's message: what its authors embed.
@@ -116,11 +115,4 @@ impl<'a> Case<'a> {
         };
         self.baseline.get_or_init(embedded).as_ref()
     }
-}
-
-/// The mesh of a `.glb`, as it is seen by whoever checks it.
-pub fn gathered(bytes: &[u8]) -> Result<Mesh, String> {
-    let document = Document::read(bytes, &Files::new()).map_err(|error| error.to_string())?;
-    let scene = Scene::gather(&document).map_err(|error| error.to_string())?;
-    Ok(scene.mesh)
 }

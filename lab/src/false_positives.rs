@@ -20,8 +20,6 @@ struct Part {
     surfaces: usize,
     /// One in so many.
     share: u64,
-    /// Whether it is read from tables that are made for a list of keys, or summed anew for every key.
-    from_tables: bool,
     /// Into how many rounds the keys are divided: after each the table is written, with what there is.
     rounds: u64,
 }
@@ -66,7 +64,6 @@ const PARTS: [Part; 4] = [
         suspects: Suspects::Models(&DISTINCT),
         surfaces: 1,
         share: 1,
-        from_tables: true,
         rounds: 50,
     },
     Part {
@@ -74,7 +71,6 @@ const PARTS: [Part; 4] = [
         suspects: Suspects::Models(&DISTINCT),
         surfaces: usize::MAX,
         share: 500,
-        from_tables: false,
         rounds: 1,
     },
     Part {
@@ -82,7 +78,6 @@ const PARTS: [Part; 4] = [
         suspects: Suspects::Models(&NEAR),
         surfaces: 1,
         share: 2000,
-        from_tables: false,
         rounds: 1,
     },
     Part {
@@ -90,7 +85,6 @@ const PARTS: [Part; 4] = [
         suspects: Suspects::Crafted,
         surfaces: 1,
         share: 1,
-        from_tables: true,
         rounds: 1,
     },
 ];
@@ -163,11 +157,6 @@ fn measured(
             Measurement::Ring(ring::Measurement::new(&mesh)),
             Measurement::Solid(solid::Surfaces::new(&mesh).take(part.surfaces).collect()),
         ]);
-        let evidence = if part.from_tables {
-            evidence.for_many_keys()
-        } else {
-            evidence
-        };
         (name, evidence)
     };
     let suspects = suspects(models, names, seed)?;
@@ -251,13 +240,8 @@ fn tail(names: &[String], ln_ps: &[Vec<f64>]) -> String {
 
 fn document(part: &Part, names: &[String], ln_ps: &[Vec<f64>]) -> String {
     let tests = ln_ps.iter().map(Vec::len).sum::<usize>();
-    let source = if part.from_tables {
-        "from tables, as of a list of keys"
-    } else {
-        "as of a single key"
-    };
     let mut text = format!(
-        "\n## {}\n\n{tests} keys, read {source}.\n\n\
+        "\n## {}\n\n{tests} keys.\n\n\
          | ln p below that of | bound | at most | all | unmarked | marked by another key and attacked |\n\
          |---|--:|--:|--:|--:|--:|\n",
         part.title

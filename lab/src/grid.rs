@@ -1,7 +1,8 @@
 //! The grid: every row of the tables, once. What attacks there are, and how strong, is in `meshmark::internals::attack`; here is what needs
 //! a key, and what is done one after another.
 
-use crate::case::{Case, gathered};
+use crate::case::Case;
+use crate::models::gathered;
 use crate::real::Tool;
 use meshmark::internals::attack::{CATALOGUE, Family, Step, average, chain, step, warp};
 use meshmark::internals::mesh::Mesh;

@@ -1,8 +1,10 @@
 //! What is marked: generated shapes, and files where there are some.
 
 use glam::DVec3;
+use meshmark::Files;
+use meshmark::internals::document::Document;
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
-use meshmark::internals::scene::to_glb;
+use meshmark::internals::scene::{Scene, to_glb};
 use std::path::{Path, PathBuf};
 
 /// What a model is like, and so which table it is in.
@@ -149,12 +151,11 @@ fn extension(path: &Path) -> &str {
 
 /// A model, unless it is too small.
 fn read(path: &Path) -> Result<Option<Model>, String> {
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     let bytes = match extension(path) {
-        "obj" => to_glb(&read_obj(&String::from_utf8_lossy(&bytes))?),
-        _ => bytes,
+        "obj" => to_glb(&read_obj(path)?),
+        _ => std::fs::read(path).map_err(|error| error.to_string())?,
     };
-    let mesh = crate::case::gathered(&bytes)?;
+    let mesh = gathered(&bytes)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let is_game =
         mesh.positions.len() < LOW_POLY || Edges::new(&mesh).num_components() > MANY_PARTS;
@@ -176,37 +177,28 @@ fn read(path: &Path) -> Result<Option<Model>, String> {
     }))
 }
 
-/// Positions and polygons of a Wavefront .obj, polygons as fans.
-fn read_obj(text: &str) -> Result<Mesh, String> {
-    let mut mesh = Mesh::default();
-    for line in text.lines() {
-        let wrong = || format!("not understood: {line}");
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let numbers: Vec<f64> = words.take(3).flat_map(str::parse).collect();
-                let position: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;
-                mesh.positions.push(DVec3::from(position));
-            }
-            Some("f") => {
-                let corners: Vec<u32> = words
-                    .map(|word| word.split('/').next().unwrap_or("").parse::<u32>())
-                    .collect::<Result<_, _>>()
-                    .map_err(|_| wrong())?;
-                if corners
-                    .iter()
-                    .any(|&c| c == 0 || c as usize > mesh.positions.len())
-                {
-                    return Err(wrong());
-                }
-                let rest = corners.get(1..).unwrap_or_default();
-                mesh.triangles.extend(
-                    rest.windows(2)
-                        .map(|pair| [corners[0] - 1, pair[0] - 1, pair[1] - 1]),
-                );
-            }
-            _ => {}
+/// The mesh of a `.glb`, as it is seen by whoever checks it.
+pub fn gathered(bytes: &[u8]) -> Result<Mesh, String> {
+    let document = Document::read(bytes, &Files::new()).map_err(|error| error.to_string())?;
+    let scene = Scene::gather(&document).map_err(|error| error.to_string())?;
+    Ok(scene.mesh)
+}
+
+/// The surface of a Wavefront .obj, polygons as fans.
+fn read_obj(path: &Path) -> Result<Mesh, String> {
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+        ..tobj::LoadOptions::default()
+    };
+    let (models, _) = tobj::load_obj(path, &options).map_err(|error| error.to_string())?;
+    Ok(Mesh::joined(models.into_iter().map(|model| {
+        let (positions, _) = model.mesh.positions.as_chunks();
+        let (triangles, _) = model.mesh.indices.as_chunks();
+        Mesh {
+            positions: positions.iter().copied().map(DVec3::from_array).collect(),
+            triangles: triangles.to_vec(),
         }
-    }
-    Ok(mesh)
+    })))
 }

@@ -6,7 +6,7 @@
 use crate::seed::Seed;
 use meshmark::internals::carrier::{Measurement, ring};
 use meshmark::internals::code::{Checked, Codeword, Symbol};
-use meshmark::internals::key::Prf;
+use meshmark::internals::key::{Prf, unit};
 use meshmark::{Carrier, Evidence, Extraction, Key, Payload, Verdict, extract, verify};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -185,7 +185,7 @@ struct Chance {
 impl Chance {
     fn unit(&mut self) -> f64 {
         self.drawn += 1;
-        (self.prf.at(self.drawn).0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(self.prf.at(self.drawn).0)
     }
 }
 

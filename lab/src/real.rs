@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask lab --real` installs them, with the scripts in `lab/real` that run what is no program by itself.
 
-use crate::case::gathered;
+use crate::models::gathered;
 use meshmark::internals::mesh::Mesh;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -7,10 +7,8 @@ use crate::models::{Class, Model};
 use crate::published::{ASPOSE, BENCHMARK, METHODS};
 use crate::run::Scope;
 use meshmark::Strength;
+use meshmark::internals::detection::LN_P_FOUND;
 use std::fmt::Write;
-
-/// The bound that a row counts.
-const LN_BOUND: f64 = -20.723_265_836_946_41; // ln 1e-9
 
 /// What a document says of its run.
 pub struct Origin<'a> {
@@ -274,7 +272,7 @@ fn aspose(text: &mut String) {
 
 fn line(row: &Row, cells: &[&Cell]) -> String {
     let outcomes = || cells.iter().flat_map(|cell| &cell.outcome);
-    let is_below = |outcome: &Outcome| outcome.ln_p < LN_BOUND;
+    let is_below = |outcome: &Outcome| outcome.ln_p < LN_P_FOUND;
     let numbers = |of: &dyn Fn(&Outcome) -> Option<f64>, decimals, unit| {
         median(outcomes().filter_map(of).collect(), decimals, unit)
     };

@@ -100,36 +100,76 @@ impl Attack {
     }
 }
 
+const fn attack(
+    name: &'static str,
+    family: Family,
+    unit: &'static str,
+    levels: &'static [f64],
+    apply: fn(&Mesh, f64, u64) -> Mesh,
+) -> Attack {
+    Attack {
+        name,
+        family,
+        unit,
+        levels,
+        apply,
+    }
+}
+
+/// Noise along random directions, in percent of the diagonal.
+pub const NOISE: Attack = attack(
+    "noise",
+    Family::Benchmark,
+    " %",
+    &[0.05, 0.1, 0.3, 0.5],
+    |m, x, seed| noise(m, x / 100.0, seed),
+);
+
+/// Quadric error metrics, in percent of the edges.
+pub const SIMPLIFY: Attack = attack(
+    "simplify",
+    Family::Benchmark,
+    " %",
+    &[10.0, 30.0, 50.0, 70.0, 90.0, 95.0, 97.5],
+    |m, x, _| simplify(m, x / 100.0),
+);
+
+/// A part cut off, in percent.
+pub const CROP: Attack = attack(
+    "crop",
+    Family::Benchmark,
+    " %",
+    &[10.0, 30.0, 50.0],
+    |m, x, seed| crop(m, x / 100.0, seed),
+);
+
+/// Laplacian smoothing that moves boundaries too, in steps of 0.1.
+pub const SMOOTH: Attack = attack(
+    "Laplacian with borders",
+    Family::Smoothing,
+    "",
+    &[10.0, 50.0],
+    |m, x, _| smooth(m, 0.1, x as u32),
+);
+
+/// Quantization as glTF's optimisers do it, to so many bits.
+pub const QUANTIZE_EVENLY: Attack = attack(
+    "glTF quantize",
+    Family::Wild,
+    " bits",
+    &[14.0, 12.0, 10.0, 8.0],
+    |m, x, _| quantize_evenly(m, x as u32),
+);
+
 /// Every attack, in the order of tables.
 pub static CATALOGUE: &[Attack] = &{
     use Family::{Benchmark, Deliberate, Retessellation, Smoothing, Wild};
-    const fn attack(
-        name: &'static str,
-        family: Family,
-        unit: &'static str,
-        levels: &'static [f64],
-        apply: fn(&Mesh, f64, u64) -> Mesh,
-    ) -> Attack {
-        Attack {
-            name,
-            family,
-            unit,
-            levels,
-            apply,
-        }
-    }
     [
         attack("reorder", Benchmark, "", &[], |m, _, seed| reorder(m, seed)),
         attack("similarity", Benchmark, "", &[], |m, _, seed| {
             similarity(m, seed)
         }),
-        attack(
-            "noise",
-            Benchmark,
-            " %",
-            &[0.05, 0.1, 0.3, 0.5],
-            |m, x, seed| noise(m, x / 100.0, seed),
-        ),
+        NOISE,
         attack(
             "Laplacian",
             Benchmark,
@@ -147,13 +187,7 @@ pub static CATALOGUE: &[Attack] = &{
         attack("midpoint", Benchmark, "", &[], |m, _, _| midpoint(m)),
         attack("square root of 3", Benchmark, "", &[], |m, _, _| sqrt3(m)),
         attack("Loop", Benchmark, "", &[], |m, _, _| loop_scheme(m)),
-        attack(
-            "simplify",
-            Benchmark,
-            " %",
-            &[10.0, 30.0, 50.0, 70.0, 90.0, 95.0, 97.5],
-            |m, x, _| simplify(m, x / 100.0),
-        ),
+        SIMPLIFY,
         attack(
             "simplify Lindstrom-Turk",
             Benchmark,
@@ -161,23 +195,11 @@ pub static CATALOGUE: &[Attack] = &{
             &[10.0, 30.0, 50.0, 70.0, 90.0, 95.0, 97.5],
             |m, x, _| simplify_volume(m, x / 100.0),
         ),
-        attack(
-            "crop",
-            Benchmark,
-            " %",
-            &[10.0, 30.0, 50.0],
-            |m, x, seed| crop(m, x / 100.0, seed),
-        ),
+        CROP,
         attack("MeshSmooth", Smoothing, "", &[1.0, 2.0], |m, x, _| {
             catmull_clark(m, x as u32)
         }),
-        attack(
-            "Laplacian with borders",
-            Smoothing,
-            "",
-            &[10.0, 50.0],
-            |m, x, _| smooth(m, 0.1, x as u32),
-        ),
+        SMOOTH,
         attack("Taubin", Smoothing, "", &[5.0, 20.0], |m, x, _| {
             taubin(m, 0.5, -0.53, x as u32)
         }),
@@ -233,13 +255,7 @@ pub static CATALOGUE: &[Attack] = &{
         attack("posed", Wild, " degrees", &[10.0, 30.0], |m, x, _| {
             bend(m, x)
         }),
-        attack(
-            "glTF quantize",
-            Wild,
-            " bits",
-            &[14.0, 12.0, 10.0, 8.0],
-            |m, x, _| quantize_evenly(m, x as u32),
-        ),
+        QUANTIZE_EVENLY,
         attack(
             "non-uniform scale",
             Wild,

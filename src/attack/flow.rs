@@ -1,6 +1,6 @@
 //! Mean curvature flow.
 
-use crate::geometry::{conjugate_gradients, cotangents};
+use crate::geometry::{conjugate_gradients, cotangents, unconditioned};
 use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
@@ -100,7 +100,15 @@ impl System {
         };
         let mut target = scaled(&self.pulled(x));
         target.iter_mut().for_each(|value| *value = -*value);
-        let moves = conjugate_gradients(apply, target, CG_TOLERANCE, CG_STEPS);
+        let mut moves = vec![0.0; target.len()];
+        conjugate_gradients(
+            apply,
+            unconditioned,
+            &target,
+            &mut moves,
+            CG_TOLERANCE,
+            CG_STEPS,
+        );
         scaled(&moves)
     }
 }

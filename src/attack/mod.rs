@@ -30,7 +30,9 @@ mod weld;
 
 pub use average::average;
 pub use bend::bend;
-pub use catalogue::{Attack, CATALOGUE, Family, Step, chain, step};
+pub use catalogue::{
+    Attack, CATALOGUE, CROP, Family, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step, chain, step,
+};
 pub use crop::crop;
 pub use export::{bake, convert_units, mirror, swap_axes};
 pub use flip::delaunay;
@@ -46,7 +48,7 @@ pub use reorder::reorder;
 pub use resample::resample;
 pub use scene::into_scene;
 pub use similarity::similarity;
-pub use simplify::{simplify, simplify_on, simplify_to};
+pub use simplify::{simplify, simplify_to};
 pub use smooth::{bilaplacian, smooth, smooth_inside, taubin};
 pub use soup::soup;
 pub use subdivide::{catmull_clark, loop_scheme, midpoint, sqrt3};

@@ -18,16 +18,6 @@ pub fn simplify(mesh: &Mesh, fraction: f64) -> Mesh {
     collapse.mesh()
 }
 
-/// What [`simplify`] leaves at each of some fractions, which ascend: each goes on from the one before.
-pub fn simplify_on(mesh: &Mesh, fractions: &[f64]) -> Vec<Mesh> {
-    let mut collapse = by_planes(mesh);
-    let next = |&fraction: &f64| {
-        collapse.run(Until::WithoutEdges(fraction));
-        collapse.mesh()
-    };
-    fractions.iter().map(next).collect()
-}
-
 /// The same until no more than `num_faces` are left.
 pub fn simplify_to(mesh: &Mesh, num_faces: usize) -> Mesh {
     let mut collapse = by_planes(mesh);

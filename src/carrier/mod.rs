@@ -4,8 +4,9 @@
 //! signs of a codeword, `measure` takes from a mesh all that needs no key, and a [`Measurement`] and a key make soft symbols, one
 //! list for each hypothesis that was declared in advance. Nobody outside this room names a carrier by hand.
 
+pub mod direction;
 mod error;
-pub mod osveta;
+pub mod qim;
 mod reading;
 pub mod ring;
 pub mod solid;
@@ -182,14 +183,6 @@ impl Measurement {
         match self {
             Measurement::Solid(solid) => solid.read(key, &mut ignore).unwrap_or_default(),
             Measurement::Ring(ring) => ring.read(key),
-        }
-    }
-
-    /// The same measurement, made ready for a list of keys: see [`solid::Measurement::for_many_keys`].
-    pub fn for_many_keys(self) -> Measurement {
-        match self {
-            Measurement::Solid(solid) => Measurement::Solid(solid.for_many_keys()),
-            ring => ring,
         }
     }
 

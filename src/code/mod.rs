@@ -3,7 +3,6 @@
 mod check;
 mod convolutional;
 mod ldpc;
-pub mod run_length;
 mod text;
 
 pub use check::{CHECK_BITS, Checked};

@@ -66,14 +66,6 @@ impl Evidence {
         }
     }
 
-    /// The same evidence, made ready for a list of keys.
-    #[doc(hidden)]
-    pub fn for_many_keys(self) -> Evidence {
-        Evidence {
-            measurements: self.measurements.map(Measurement::for_many_keys),
-        }
-    }
-
     /// What a carrier measured.
     #[doc(hidden)]
     pub fn measurement(&self, carrier: Carrier) -> &Measurement {

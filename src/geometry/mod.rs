@@ -23,7 +23,7 @@ pub use curvature::{
 };
 pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
-pub use linear::conjugate_gradients;
+pub use linear::{conjugate_gradients, unconditioned};
 pub use normal::{face_areas, normal_deviations, vertex_normals};
 pub use orientation::{oriented, outward};
 pub use pose::Pose;

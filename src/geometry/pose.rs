@@ -2,6 +2,7 @@
 //!
 //! Moments are integrals over the surface, exact for triangles, so tessellation does not matter. O(F).
 
+use super::orientation::oriented;
 use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
 
@@ -23,6 +24,14 @@ pub struct Pose {
 const DEGENERATE: f64 = 0.98;
 
 impl Pose {
+    /// Half turns about the axes: what their signs leave open.
+    pub const HALF_TURNS: [DVec3; 4] = [
+        DVec3::new(1.0, 1.0, 1.0),
+        DVec3::new(1.0, -1.0, -1.0),
+        DVec3::new(-1.0, 1.0, -1.0),
+        DVec3::new(-1.0, -1.0, 1.0),
+    ];
+
     /// The pose of a mesh; `None` without area.
     pub fn of(mesh: &Mesh) -> Option<Pose> {
         let (mut total, mut first) = (0.0, DVec3::ZERO);
@@ -98,6 +107,18 @@ impl Pose {
             axes,
             spreads,
         })
+    }
+
+    /// The pose of a mesh whose triangles face outwards, and of its boundary: by volume moments, or by area moments where it
+    /// encloses next to nothing.
+    pub fn of_oriented(mesh: &Mesh, boundary: &[(u32, u32)]) -> Option<Pose> {
+        Pose::of_volume(mesh, boundary).or_else(|| Pose::of(mesh))
+    }
+
+    /// The same of any mesh.
+    pub fn of_surface(mesh: &Mesh) -> Option<Pose> {
+        let (mesh, boundary) = oriented(mesh);
+        Pose::of_oriented(&mesh, &boundary)
     }
 
     /// The same frame with its axes nearest to another's: their signs, and where spreads are so near each other that axes may

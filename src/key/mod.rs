@@ -140,3 +140,8 @@ impl Prf {
         (hash.h1, hash.h2)
     }
 }
+
+/// A word of a [`Prf`] as a number from 0 to below 1: its highest 53 bits, divided by 2^53.
+pub fn unit(word: u64) -> f64 {
+    (word >> 11) as f64 / (1u64 << 53) as f64
+}

@@ -2,13 +2,12 @@
 
 use super::listener::Listener;
 use super::{argument, encoded, files_from, set, thrown};
-use crate::carrier::osveta::{self, Barycentre, Ranking};
 use crate::document::Document;
 use crate::geometry::diagonal;
 use crate::mesh::Mesh;
+use crate::paper::figure_5::{self, Case, Hosts};
+use crate::paper::{self, Barycentre, HostsOptions, Preparation, Ranking, Smoothing};
 use crate::scene::Scene;
-use crate::study::errors::{self, Case, Hosts};
-use crate::study::{self, HostsOptions, Preparation, Smoothing};
 use crate::watermark::Error;
 use glam::DVec3;
 use js_sys::{Float64Array, Function, Object, Reflect, Uint32Array};
@@ -33,10 +32,10 @@ pub fn parameters() -> Result<JsValue, JsValue> {
         strengths: [f64; 5],
     }
     encoded(&Parameters {
-        num_faces: study::NUM_FACES,
+        num_faces: paper::NUM_FACES,
         num_hosts: HostsOptions::default().num_hosts,
-        strength: errors::STRENGTH,
-        strengths: errors::STRENGTHS,
+        strength: figure_5::STRENGTH,
+        strengths: figure_5::STRENGTHS,
     })
 }
 
@@ -68,14 +67,14 @@ pub fn prepare(model: &[u8], files: JsValue, preparation: &str) -> Result<Object
 /// Vertices, the most stable first.
 #[wasm_bindgen(skip_typescript)]
 pub fn rank(mesh: JsValue, ranking: &str) -> Result<Uint32Array, JsValue> {
-    let stability = osveta::rank(&mesh_from(&mesh)?, ranking_from(ranking)?);
+    let stability = paper::rank(&mesh_from(&mesh)?, ranking_from(ranking)?);
     Ok(indices(&stability.order))
 }
 
 /// Numbers at every vertex.
 #[wasm_bindgen(skip_typescript)]
 pub fn fields(mesh: JsValue, ranking: &str) -> Result<Object, JsValue> {
-    let fields = study::fields(&mesh_from(&mesh)?, ranking_from(ranking)?);
+    let fields = paper::fields(&mesh_from(&mesh)?, ranking_from(ranking)?);
     let result = Object::new();
     set(&result, "gaussian", &reals(&fields.gaussian))?;
     set(&result, "mean", &reals(&fields.mean))?;
@@ -92,7 +91,7 @@ pub fn trace(
     ranking: &str,
     num_hosts: u32,
 ) -> Result<Object, JsValue> {
-    let tracing = study::trace(
+    let tracing = paper::trace(
         &mesh_from(&mesh)?,
         smoothing_from(smoothing)?,
         iterations_from(iterations)?,
@@ -122,7 +121,7 @@ pub fn hosts(
     } else {
         decoded(options)?
     };
-    encoded(&study::hosts(
+    encoded(&paper::hosts(
         &mesh_from(&mesh)?,
         smoothing_from(smoothing)?,
         iterations_from(iterations)?,
@@ -161,7 +160,7 @@ pub fn errors(
         on_progress,
         signal: None,
     };
-    let errors = errors::errors(&mesh, &case, 0..u64::from(asked.keys), &mut listener);
+    let errors = figure_5::errors(&mesh, &case, 0..u64::from(asked.keys), &mut listener);
     encoded(&errors.map_err(Error::from).map_err(thrown)?)
 }
 

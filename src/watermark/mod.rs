@@ -14,11 +14,12 @@ mod report;
 pub use embed::{Embedding, embed};
 pub use error::Error;
 pub use extract::{detect, extract, extract_many, measure, verify};
-pub use forecast::{Forecast, Level};
 pub use inspect::{CarrierCapacity, Inspection, inspect};
 pub use model::{Model, file_names};
 pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };
 pub use options::{EmbedOptions, Strength};
-pub use report::{CarrierReading, Details, EmbedReport, Extraction, Input, Verdict};
+pub use report::{
+    CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Verdict,
+};

@@ -2,7 +2,7 @@
 
 use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
-use crate::carrier::osveta::{Cells, cells};
+use crate::carrier::direction::{Cells, NUM_TESTS};
 use crate::code::{Block, TextCheck, TextError};
 use crate::detection::{LN_P_FOUND, Statistic, union};
 use crate::digest::sha256;
@@ -234,7 +234,7 @@ impl NoteReading {
     }
 
     fn found(text: String, block: Block, statistic: Statistic) -> NoteReading {
-        let ways = f64::from(cells::NUM_TESTS) * Block::ALL.len() as f64;
+        let ways = f64::from(NUM_TESTS) * Block::ALL.len() as f64;
         let charge = NoteSize::room(block).bits as f64 * LN_2 + libm::log(ways);
         NoteReading {
             verdict: Verdict::Found,

@@ -1,6 +1,5 @@
 //! What people and programs are told. The fields' names in camel case are JavaScript's: see `src/wasm/types.d.ts`.
 
-use super::Forecast;
 use crate::carrier::Carrier;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -167,4 +166,30 @@ pub struct EmbedReport {
     pub host_sha256: String,
     /// SHA-256 of the main file after.
     pub marked_sha256: String,
+}
+
+/// How a mark is likely to stand an attack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Level {
+    /// It is found with a wide margin: twice the exponent that is needed.
+    Green,
+    /// It is found, barely.
+    Amber,
+    /// It is not found.
+    Red,
+}
+
+/// One attack, and what was left of the mark after it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Forecast {
+    /// Which attack: `none`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-70` or `crop`.
+    pub attack: &'static str,
+    /// What is likely.
+    pub level: Level,
+    /// Natural logarithm of the bound that the mark reached.
+    pub ln_p: f64,
 }

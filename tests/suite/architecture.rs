@@ -1,167 +1,119 @@
-//! Who may know whom: docs/ARCHITECTURE.md's table, held against the sources.
+//! Who may know whom: docs/ARCHITECTURE.md's tables, held against the sources.
 #![cfg(not(target_arch = "wasm32"))]
 
-use std::fs;
-use std::path::Path;
+mod sources;
 
-/// Each room, and all that it may use of the others.
-const MAY_USE: [(&str, &[&str]); 20] = [
-    ("bits", &[]),
-    ("digest", &[]),
-    ("progress", &[]),
-    ("order", &[]),
-    ("random", &[]),
-    ("detection", &[]),
-    ("document", &["order"]),
-    ("key", &[]),
-    ("code", &["bits", "key"]),
-    ("mesh", &["random"]),
-    ("geometry", &["mesh", "order"]),
-    ("scene", &["document", "mesh", "geometry", "order"]),
-    (
-        "carrier",
-        &[
-            "mesh",
-            "geometry",
-            "key",
-            "code",
-            "detection",
-            "order",
-            "progress",
-            "random",
-        ],
-    ),
-    ("evidence", &["carrier", "mesh"]),
-    ("attack", &["mesh", "geometry", "random"]),
-    (
-        "watermark",
-        &[
-            "attack",
-            "bits",
-            "digest",
-            "progress",
-            "detection",
-            "document",
-            "key",
-            "code",
-            "mesh",
-            "geometry",
-            "scene",
-            "carrier",
-            "evidence",
-        ],
-    ),
-    (
-        "study",
-        &[
-            "attack",
-            "carrier",
-            "code",
-            "detection",
-            "geometry",
-            "key",
-            "mesh",
-            "order",
-            "progress",
-            "random",
-            "watermark",
-        ],
-    ),
-    ("wasm", &["*"]),
-    ("lib", &["*"]),
-    ("bin", &["*"]),
-];
+use sources::Sources;
+use std::collections::BTreeSet;
 
-/// Crates that only some rooms may use.
-const ONLY_IN: [(&[&str], &[&str]); 8] = [
-    (&["gltf", "serde_json", "base64"], &["document", "bin"]),
-    (
-        &["argon2", "hkdf", "siphasher", "unicode_normalization"],
-        &["key"],
-    ),
-    (&["zeroize"], &["key", "wasm"]),
-    (&["sha2"], &["key", "digest"]),
-    (
-        &["wasm_bindgen", "js_sys", "web_sys", "serde_wasm_bindgen"],
-        &["wasm"],
-    ),
-    (&["clap", "rpassword"], &["bin"]),
-    (&["nalgebra"], &["geometry"]),
-    (&["labrador_ldpc"], &["code"]),
-];
+/// A row of the document's tables: what it is about, and what is said of that.
+type Row = (Vec<String>, Vec<String>);
 
-/// Every source file with the room it is in.
-fn sources() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut sources = Vec::new();
-    let mut open = vec![root.clone()];
-    while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let inside = path
-                    .strip_prefix(&root)
-                    .unwrap()
-                    .to_str()
-                    .unwrap()
-                    .to_owned();
-                let room = inside.split(['/', '.']).next().unwrap().to_owned();
-                sources.push((room, fs::read_to_string(&path).unwrap()));
-            }
-        }
-    }
-    sources
+/// The rows of the table in docs/ARCHITECTURE.md that has a heading, as names.
+fn table(heading: &str) -> Vec<Row> {
+    const DOCUMENT: &str = include_str!("../../docs/ARCHITECTURE.md");
+    let (_, rows) = DOCUMENT.split_once(heading).expect("the table is there");
+    let names = |cell: &str| -> Vec<String> {
+        let names = cell.split([' ', ',', '`']).filter(|name| !name.is_empty());
+        names
+            .filter(|name| *name != "-")
+            .map(str::to_owned)
+            .collect()
+    };
+    let rows = rows.trim_start().lines().skip(1);
+    let rows = rows.take_while(|line| line.starts_with('|'));
+    let cells = rows.map(|line| line.trim_matches('|').split('|').collect::<Vec<_>>());
+    cells
+        .map(|cells| (names(cells[0]), names(cells[1])))
+        .collect()
 }
 
-/// Lines of code: comments are free to mention anything.
-fn code(source: &str) -> impl Iterator<Item = &str> {
-    source
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-}
-
-/// The rooms that a line names as `crate::room`.
-fn rooms_named(line: &str) -> impl Iterator<Item = &str> {
-    line.split("crate::").skip(1).map(|rest| {
-        rest.split(|c: char| !c.is_alphanumeric() && c != '_')
-            .next()
-            .unwrap_or("")
-    })
+/// The room of a file.
+fn room(file: &str) -> &str {
+    file.split(['/', '.']).next().unwrap_or("")
 }
 
 #[test]
 fn architecture_rooms_use_only_what_they_may() {
-    let sources = sources();
-    assert!(sources.len() > 30, "the sources were found");
-    for (room, source) in &sources {
-        let (_, may_use) = MAY_USE
+    let sources = Sources::of("src");
+    assert!(sources.files.len() > 30, "the sources were found");
+    let may_use = table("| room | may use |\n");
+    let allowed = |room: &str| {
+        let row = may_use
             .iter()
-            .find(|(name, _)| name == room)
-            .unwrap_or_else(|| panic!("{room} is not in the table"));
-        for line in code(source) {
-            for named in rooms_named(line) {
-                let allowed = may_use.contains(&"*") || named == room || may_use.contains(&named);
-                assert!(allowed, "{room} uses {named}: {line}");
-            }
-        }
+            .find(|(rooms, _)| rooms.iter().any(|other| other == room));
+        &row.unwrap_or_else(|| panic!("{room} is not in the table"))
+            .1
+    };
+    for (user, used) in sources.arrows() {
+        let [user, used] = [user, used].map(|file| &*sources.files[file].name);
+        let may = allowed(room(user));
+        let is_allowed = may
+            .iter()
+            .any(|name| name == room(used) || name == "everything");
+        assert!(room(user) == room(used) || is_allowed, "{user} uses {used}");
+    }
+}
+
+#[test]
+fn architecture_tables_have_every_room_and_arrows_that_lead_up() {
+    let sources = Sources::of("src");
+    let rooms: BTreeSet<&str> = sources.files.iter().map(|file| room(&file.name)).collect();
+    let may_use = table("| room | may use |\n");
+    let listed: Vec<&str> = may_use
+        .iter()
+        .flat_map(|(rooms, _)| rooms)
+        .map(String::as_str)
+        .collect();
+    assert_eq!(listed.iter().copied().collect::<BTreeSet<_>>(), rooms);
+    let described = table("| room | what it does |\n");
+    let described: BTreeSet<&str> = described
+        .iter()
+        .flat_map(|(rooms, _)| rooms)
+        .map(String::as_str)
+        .collect();
+    let roots = BTreeSet::from(["internals", "lib"]);
+    assert_eq!(described, &rooms - &roots);
+    let mut above = Vec::new();
+    for (rooms, uses) in &may_use {
+        let is_above = |name: &String| above.contains(&name) || name == "everything";
+        assert!(uses.iter().all(is_above), "{rooms:?} use what stands below");
+        above.extend(rooms);
     }
 }
 
 #[test]
 fn architecture_crates_stay_in_their_rooms() {
-    for (room, source) in sources() {
-        for (crates, rooms) in ONLY_IN {
-            for line in code(&source) {
+    let only_in = table("| crate | only in |\n");
+    assert!(!only_in.is_empty());
+    for file in Sources::of("src").files {
+        for (crates, rooms) in &only_in {
+            for line in &file.lines {
                 let used = crates
                     .iter()
                     .find(|name| line.contains(&format!("{name}::")));
+                let is_allowed = rooms.iter().any(|name| name == room(&file.name));
                 assert!(
-                    used.is_none() || rooms.contains(&room.as_str()),
-                    "{room} uses {used:?}: {line}"
+                    used.is_none() || is_allowed,
+                    "{} uses {used:?}: {line}",
+                    file.name
                 );
             }
         }
     }
+}
+
+#[test]
+fn architecture_files_of_the_library_make_no_circle() {
+    assert_eq!(Sources::of("src").circle(), None);
+}
+
+#[test]
+fn architecture_files_of_the_lab_make_no_circle() {
+    assert_eq!(Sources::of("lab/src").circle(), None);
+}
+
+#[test]
+fn architecture_files_of_xtask_make_no_circle() {
+    assert_eq!(Sources::of("xtask/src").circle(), None);
 }

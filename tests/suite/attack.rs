@@ -1,6 +1,6 @@
 //! What each attack promises.
 
-use crate::support::fixtures::asteroid;
+use crate::support::fixtures::{asteroid, cuboid};
 use glam::DVec3;
 use meshmark::internals::attack::{
     CATALOGUE, average, catmull_clark, crop, loop_scheme, midpoint, noise, quantize, remesh,
@@ -409,29 +409,10 @@ fn attack_remesh_evens_edges_on_the_same_surface() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn attack_remesh_keeps_creases() {
-    let cube = cube();
+    let cube = cuboid(DVec3::ONE);
     let new = remesh(&cube, 0.03);
     assert_sound("cube", &new);
     assert!((volume(&new) - 1.0).abs() < 1e-9, "{}", volume(&new));
-}
-
-fn cube() -> Mesh {
-    let position = |v: u32| DVec3::new(f64::from(v & 1), f64::from(v >> 1 & 1), f64::from(v >> 2));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    Mesh {
-        positions: (0..8).map(position).collect(),
-        triangles: quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -439,7 +420,7 @@ fn attack_resample_finds_the_surface_again() {
     for (name, mesh, cell) in [
         ("asteroid", asteroid(), 0.015),
         ("knot", shapes::torus_knot(160, 24), 0.008),
-        ("cube", cube(), 0.02),
+        ("cube", cuboid(DVec3::ONE), 0.02),
     ] {
         let new = resample(&mesh, cell);
         assert_sound(name, &new);

@@ -2,8 +2,8 @@
 //! suspect could swallow one. Every test of every way of reading is held against its own bound, at every decade.
 
 use glam::DVec3;
-use meshmark::internals::carrier::osveta::Cells;
-use meshmark::internals::carrier::osveta::cells::NUM_TESTS;
+use meshmark::internals::carrier::direction::Cells;
+use meshmark::internals::carrier::direction::NUM_TESTS;
 use meshmark::internals::carrier::{Measurement, Reading, ring, solid};
 use meshmark::internals::code::{Block, Checked, Codeword, SoftSymbol, Symbol};
 use meshmark::internals::detection::{Statistic, union};
@@ -254,7 +254,7 @@ fn hold_surfaces(name: &str, surfaces: &solid::Measurement, keys: u64) {
 /// Keys against a mesh as it is.
 fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
     let plain: solid::Measurement = solid::Surfaces::new(mesh).plain().collect();
-    hold_surfaces(name, &plain.for_many_keys(), keys);
+    hold_surfaces(name, &plain, keys);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Curvature against what is known exactly.
 
+use crate::support::fixtures::cuboid;
 use glam::DVec3;
 use meshmark::internals::geometry::{
     Curvature, collapse_costs, curvature_integrals, dihedrals, face_areas, fitted_curvature,
@@ -229,22 +230,7 @@ fn curvature_follows_scale() {
 /// A box: right angles at its edges, nothing across its diagonals; outside in, furrows.
 #[wasm_bindgen_test(unsupported = test)]
 fn curvature_dihedral_angles_of_a_box() {
-    let corner = |v: u32| DVec3::new(f64::from(v & 1), f64::from(v >> 1 & 1), f64::from(v >> 2));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let mut mesh = Mesh {
-        positions: (0..8).map(corner).collect(),
-        triangles: quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    };
+    let mut mesh = cuboid(DVec3::ONE);
     for sign in [1.0, -1.0] {
         let angles = dihedrals(&mesh, &Edges::new(&mesh), &face_areas(&mesh));
         assert_eq!(angles.len(), 18);

@@ -1,5 +1,6 @@
 //! Normals and distortion against what is known exactly.
 
+use crate::support::fixtures::cuboid;
 use glam::{DMat3, DVec3};
 use meshmark::internals::geometry::spectral::{self, InverseFilter};
 use meshmark::internals::geometry::{
@@ -114,26 +115,10 @@ fn geometry_surfaces_of_revolution_have_no_distinct_axes() {
     assert_eq!(Pose::of(&Mesh::default()), None);
 }
 
-fn cuboid() -> Mesh {
-    let corner = |i: u32| {
-        let side = |bit: u32, length: f64| if i >> bit & 1 == 1 { length } else { 0.0 };
-        DVec3::new(side(0, 4.0), side(1, 2.0), side(2, 1.0)) + DVec3::splat(7.0)
-    };
-    let quads = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    Mesh {
-        positions: (0..8).map(corner).collect(),
-        triangles: quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    }
+/// A box that is not at the origin.
+fn far_box() -> Mesh {
+    let mesh = cuboid(DVec3::new(4.0, 2.0, 1.0));
+    mesh.with_positions(mesh.positions.iter().map(|p| *p + 7.0).collect())
 }
 
 fn volume_pose(mesh: &Mesh) -> Option<Pose> {
@@ -144,7 +129,7 @@ fn volume_pose(mesh: &Mesh) -> Option<Pose> {
 /// Variances of a solid cuboid are the squared sides over 12.
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_volume_pose_of_a_cuboid_is_exact() {
-    let pose = volume_pose(&cuboid()).unwrap();
+    let pose = volume_pose(&far_box()).unwrap();
     assert!(pose.centre.distance(DVec3::new(9.0, 8.0, 7.5)) < 1e-12);
     assert!((pose.size * pose.size - 21.0 / 12.0).abs() < 1e-12);
     assert!((pose.spreads * 21.0).distance(DVec3::new(16.0, 4.0, 1.0)) < 1e-9);
@@ -153,9 +138,12 @@ fn geometry_volume_pose_of_a_cuboid_is_exact() {
 /// Without its lid a cuboid has the same frame: a cap closes it.
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_volume_pose_closes_holes() {
-    let mut open = cuboid();
+    let mut open = far_box();
     open.triangles.truncate(10);
-    let (open, closed) = (volume_pose(&open).unwrap(), volume_pose(&cuboid()).unwrap());
+    let (open, closed) = (
+        volume_pose(&open).unwrap(),
+        volume_pose(&far_box()).unwrap(),
+    );
     assert!(open.centre.distance(closed.centre) < 1e-9 && (open.size - closed.size).abs() < 1e-9);
     let sheet = Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
@@ -166,7 +154,7 @@ fn geometry_volume_pose_closes_holes() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_outward_turns_whole_patches() {
-    let mut inside_out = cuboid();
+    let mut inside_out = far_box();
     inside_out
         .triangles
         .iter_mut()
@@ -200,7 +188,7 @@ fn samples(mesh: &Mesh, max_edge: f64) -> Vec<Sample> {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn geometry_samples_are_exact_to_the_first_order() {
-    let mesh = cuboid();
+    let mesh = far_box();
     for max_edge in [100.0, 1.0, 0.3] {
         let samples = samples(&mesh, max_edge);
         let area: f64 = samples.iter().map(|sample| sample.area.length()).sum();

@@ -5,14 +5,13 @@ use glam::DVec3;
 use meshmark::internals::attack::{
     crop, noise, quantize, reorder, similarity, smooth, smooth_inside,
 };
-use meshmark::internals::carrier::solid::{Measurement, Surfaces, num_windows};
+use meshmark::internals::carrier::solid::{Measurement, num_windows};
 use meshmark::internals::carrier::{Carrier, Host, Mark, StoredError};
-use meshmark::internals::code::{Codeword, SoftSymbol, Symbol};
+use meshmark::internals::code::Codeword;
 use meshmark::internals::detection::Statistic;
 use meshmark::internals::geometry::{Distortion, diagonal};
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::progress::ignore;
-use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0f1_2345_6789_abcd;
@@ -221,50 +220,14 @@ fn solid_measurement_is_its_bytes() {
     assert!(bytes.len() < 2_000_000);
 }
 
-/// Where both readings see a window, the RMS distance of their phases is below 2 % of the quantizer's step. A distance is what
-/// the cosines show of it: never more than it is.
-#[wasm_bindgen_test(unsupported = test)]
-fn solid_tables_err_by_less_than_two_percent_of_a_step() {
-    for (shape, rms_rel) in [
-        (rock(), 0.0002),
-        (shapes::cad_part(), 0.0002),
-        (shapes::game_asset(), 0.0004),
-    ] {
-        let measurement: Measurement = Surfaces::new(&marked_at(&shape, 1, rms_rel))
-            .take(1)
-            .collect();
-        let [alone, tables] = [measurement.clone(), measurement.for_many_keys()].map(|m| {
-            let reading = m.read(&key(1), &mut ignore).unwrap();
-            reading.hypotheses.into_iter().next().unwrap().symbols
-        });
-        // Parities that occur once have one window: the two lists are of the same windows but for a few that hardly see anything.
-        let once = |list: &[SoftSymbol], symbol: Symbol| -> Option<f64> {
-            let mut same = list.iter().filter(|soft| soft.symbol == symbol);
-            let soft = same.next().filter(|_| same.next().is_none())?;
-            Some(libm::acos(soft.value / soft.weight) / TAU)
-        };
-        let parities = alone.iter().filter(|soft| soft.symbol != Symbol::Pilot);
-        let pairs = parities
-            .filter_map(|soft| Some((once(&alone, soft.symbol)?, once(&tables, soft.symbol)?)));
-        let distances: Vec<f64> = pairs.map(|(exact, tabled)| tabled - exact).collect();
-        assert!(
-            2 * distances.len() > alone.len(),
-            "{} of {} windows are in both",
-            distances.len(),
-            alone.len()
-        );
-        let square = distances.iter().map(|d| d * d).sum::<f64>() / distances.len() as f64;
-        assert!(square.sqrt() < 0.02, "{} steps at {rms_rel}", square.sqrt());
-    }
-}
-
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_refuses_shapes_that_cannot_hold_it() {
     let sheet = Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
         triangles: vec![[0, 1, 2]],
     };
-    assert!(num_windows(&sheet) <= 3 * sheet.positions.len());
+    // It is seen from hundreds of lattice points, and its three vertices can serve nine.
+    assert_eq!(num_windows(&sheet), 9);
     let host = Host {
         mesh: &sheet,
         admissible: &Admissible::default(),
@@ -276,14 +239,8 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         key: &key(1),
         codeword: &Codeword::new(MESSAGE),
     };
-    let code = Carrier::Solid
-        .embed(&host, &mark, &mut ignore)
-        .unwrap_err()
-        .code();
-    assert!(
-        ["carrier.too-few-addresses", "carrier.too-weak"].contains(&code),
-        "{code}"
-    );
+    let error = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap_err();
+    assert_eq!(error.code(), "carrier.too-weak");
 }
 
 /// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, units of areas and of

@@ -55,7 +55,7 @@ ${rows(samples, ({ title, stages }, runs) => stages.map((stage) => timesRow(titl
 
 Natively, on generated models, one stage at a time: medians of \`cargo bench\`, with statistics in \`target/criterion\`. The last
 column is for each vertex or, of one more key, for each way of reading that is declared: a turn of the frame, a pitch and a step
-of SOLID, an address kind and a cut of RING. A key of a list is read from tables.
+of SOLID, an address kind and a cut of RING.
 
 ${stages.map(stageTable).join("\n\n")}
 

@@ -1,11 +1,11 @@
 //! The paper's multiple watermarking: a note and a mark in one model, and what each does to the other.
 
-use super::measure::{Read, read_note, text};
-use crate::case::gathered;
+use super::note::{Read, read_note, text};
+use crate::models::gathered;
 use crate::seed::Seed;
 use meshmark::internals::geometry::Distortion;
+use meshmark::internals::paper::Smoothing;
 use meshmark::internals::scene::to_glb;
-use meshmark::internals::study::Smoothing;
 use meshmark::{
     Carrier, EmbedOptions, Extraction, Files, Key, Model, Payload, Strength, embed, embed_note,
     extract, measure,

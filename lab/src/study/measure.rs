@@ -1,19 +1,19 @@
 //! Runs the study.
 
 use super::layers::{Layer, layers};
-use crate::case::gathered;
-use crate::models::Model;
+use super::note::{Read, read_note, text};
+use crate::models::{Model, gathered};
 use crate::seed::Seed;
-use meshmark::internals::carrier::osveta::Barycentre;
 use meshmark::internals::geometry::Distortion;
 use meshmark::internals::mesh::Mesh;
-use meshmark::internals::progress::ignore;
-use meshmark::internals::scene::to_glb;
-use meshmark::internals::study::errors::{
+use meshmark::internals::paper::Barycentre;
+use meshmark::internals::paper::figure_5::{
     Case, Errors, Figure5, Hosts, STRENGTH, errors, figure_5, smoothings,
 };
-use meshmark::internals::study::{Preparation, Smoothing, Study, study};
-use meshmark::{Carrier, EmbedOptions, Key, Strength, Verdict, detect, embed, embed_note};
+use meshmark::internals::paper::{Preparation, Smoothing, Study, study};
+use meshmark::internals::progress::ignore;
+use meshmark::internals::scene::to_glb;
+use meshmark::{Carrier, EmbedOptions, Strength, Verdict, detect, embed, embed_note};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -45,13 +45,6 @@ pub struct Smoothed {
     pub solid: Result<Read, String>,
     pub ring: Result<Read, String>,
     pub note: Result<Read, String>,
-}
-
-/// What a detector says.
-#[derive(Clone, Copy)]
-pub struct Read {
-    pub is_right: bool,
-    pub ln_p: f64,
 }
 
 /// Studies a model on all cores.
@@ -170,21 +163,6 @@ fn marks(mesh: &Mesh, model: &Model, seed: &Seed) -> Vec<Smoothed> {
         }
     };
     pairs.into_par_iter().map(read).collect()
-}
-
-/// A note that any model of the study has room for.
-pub fn text(seed: &Seed, purpose: &str) -> String {
-    let number = seed.number(&format!("{purpose}, text"), 0);
-    let letter = |place: u32| char::from(b'a' + ((number >> (5 * place)) % 26) as u8);
-    (0..5).map(letter).collect()
-}
-
-pub fn read_note(bytes: &[u8], key: &Key, text: &str) -> Result<Read, String> {
-    let read = meshmark::read_note(bytes, key).map_err(said)?;
-    Ok(Read {
-        is_right: read.text.as_deref() == Some(text),
-        ln_p: read.ln_p,
-    })
 }
 
 /// RMS displacement of the vertices that both have: smoothing names new ones after them.

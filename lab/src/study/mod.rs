@@ -2,6 +2,7 @@
 
 mod layers;
 mod measure;
+mod note;
 mod report;
 mod verdict;
 

@@ -1,14 +1,15 @@
 //! docs/STUDY.md.
 
 use super::layers::{Layers, ORDERS};
-use super::measure::{Outcome, Read, Smoothed};
+use super::measure::{Outcome, Smoothed};
+use super::note::Read;
 use super::verdict::{counts, find, statements};
 use crate::plot::{Panel, Row, bars, grid, panels};
 use crate::report::median;
 use crate::seed::Seed;
-use meshmark::internals::carrier::osveta::Ranking;
-use meshmark::internals::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
-use meshmark::internals::study::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
+use meshmark::internals::paper::Ranking;
+use meshmark::internals::paper::figure_5::{Errors, Figure5, Finding, Hosts, STRENGTH, STRENGTHS};
+use meshmark::internals::paper::{HostsOptions, HostsRow, NUM_FACES, Rule, Smoothing, Study};
 use std::fmt::Write;
 
 /// Hosts of the curves, in the order of their colours.
@@ -372,7 +373,7 @@ fn smoothings(text: &mut String, outcomes: &[&Outcome]) -> (String, String) {
         "\n## Every smoothing\n\n\
          Simplified meshes. *Moved*: RMS displacement of the vertices that were there before, in percent of the diagonal, median of the models; the mark's own \
          is 0.08. BER: of the payload, mean of all models and keys. Note, SOLID and RING are this project's: a note is cells with a step of its own, read \
-         by `read_note`; SOLID and RING are embedded alone at *strong*, and read by `detect`. Of each: in how many models it was read rightly, and the median of \
+         by `note::read`; SOLID and RING are embedded alone at *strong*, and read by `detect`. Of each: in how many models it was read rightly, and the median of \
          ln p. One iteration: half a step of the umbrella operator or of its square; mean curvature flow for half a squared mean edge; Taubin's 0.5 and -0.53; \
          one round of the mean filter of eqs 2 to 4; one subdivision.\n\n\
          ![What is read after every smoothing](study/smoothings.svg)\n\n\
@@ -593,8 +594,8 @@ mod tests {
     use super::super::layers::Layer;
     use super::*;
     use meshmark::internals::mesh::shapes;
+    use meshmark::internals::paper::study;
     use meshmark::internals::progress::ignore;
-    use meshmark::internals::study::study;
 
     /// A mesh that is just large enough; its marks are made up.
     fn outcome(name: &str) -> Outcome {

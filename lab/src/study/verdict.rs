@@ -1,9 +1,9 @@
 //! What the study is held against, and whether it is so.
 
 use super::measure::Outcome;
-use meshmark::internals::carrier::osveta::Ranking;
-use meshmark::internals::study::errors::{Errors, Figure5, Finding, Hosts, STRENGTH};
-use meshmark::internals::study::{HostsRow, Rule, RuleCounts};
+use meshmark::internals::paper::Ranking;
+use meshmark::internals::paper::figure_5::{Errors, Figure5, Finding, Hosts, STRENGTH};
+use meshmark::internals::paper::{HostsRow, Rule, RuleCounts};
 
 /// The paper's OSVETA over the chance of the index rule, in the mean: what the literal ranking has to match.
 const LITERAL: f64 = 1.27;

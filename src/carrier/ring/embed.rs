@@ -8,12 +8,12 @@
 use super::address::{self, AddressKind, NEEDED_ADDRESSES, Turn};
 use super::feature::{Features, Neighbourhoods};
 use super::{Measurement, Owned, Ownership, STEP};
+use crate::carrier::qim::curvature;
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
-use crate::geometry::{Pose, conjugate_gradients, diagonal, vertex_normals};
+use crate::geometry::{Pose, conjugate_gradients, diagonal, unconditioned, vertex_normals};
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 const ROUNDS: usize = 6;
 const CG_STEPS: usize = 60;
@@ -211,16 +211,10 @@ impl<'a> Linearization<'a> {
             .row(vertex)
             .map(|(v, coefficient)| coefficient * along[v])
             .sum();
-        let angle = TAU * error.abs();
-        let curvature = if angle > 0.0 {
-            libm::sin(angle) / angle
-        } else {
-            1.0
-        };
         Goal {
             vertex,
             change: reached + error * STEP,
-            weight: curvature.max(LEAST_WEIGHT),
+            weight: curvature(error).max(LEAST_WEIGHT),
         }
     }
 
@@ -244,7 +238,15 @@ impl<'a> Linearization<'a> {
             y
         };
         let target = weighted(&mut goals.iter().map(|goal| goal.change));
-        let scaled = conjugate_gradients(normal, target, CG_TOLERANCE, CG_STEPS);
+        let mut scaled = vec![0.0; target.len()];
+        conjugate_gradients(
+            normal,
+            unconditioned,
+            &target,
+            &mut scaled,
+            CG_TOLERANCE,
+            CG_STEPS,
+        );
         scaled
             .iter()
             .zip(&self.units)

@@ -24,7 +24,7 @@ pub use embed::embed;
 pub use measurement::{Measurement, num_addresses};
 
 use crate::code::Symbol;
-use crate::key::{Key, Prf};
+use crate::key::{Key, Prf, unit};
 
 /// Step of the quantizer, in units of the feature: a displacement of about 1.3 % of an edge.
 const STEP: f64 = 0.04;
@@ -50,9 +50,8 @@ impl Ownership {
 
     fn get(&self, address: u64) -> Option<Owned> {
         let (dither, choice) = self.0.at(address);
-        let unit = 1.0 / (1u64 << 53) as f64;
         (choice % SHARE == 0).then(|| Owned {
-            dither: (dither >> 11) as f64 * unit,
+            dither: unit(dither),
             symbol: Symbol::select(choice / SHARE),
         })
     }

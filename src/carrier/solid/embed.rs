@@ -3,18 +3,21 @@
 //! Each round linearizes the windows' fluxes in the displacement, weighs each window by how near its lattice it is (see
 //! RING's embedder), and solves the ridge problem ([`Problem`]). The frame is measured again in every round.
 
-use super::flux::{Placement, Window, clusters, windows};
+use super::cluster::clusters;
+use super::frame::{Axes, axes_of};
 use super::freedom::{freedoms, typical};
-use super::measurement::{Axes, axes_of};
+use super::lattice::{Lattice, Placement};
+use super::pitch::{AREAS, AREAS_TO_EMBED, pitches};
 use super::problem::Problem;
-use super::{AREAS, AREAS_TO_EMBED, Lattice, cosine, pitches, pose_of, steps_for};
+use super::quantizer::{cosine, steps_for};
+use super::window::{Window, windows};
+use crate::carrier::qim::curvature;
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::detection::Statistic;
 use crate::geometry::{Pose, diagonal, oriented};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
 
 const ROUNDS: usize = 8;
 /// Weight that is left to a window half a step from its lattice.
@@ -47,7 +50,7 @@ pub fn embed(
         available,
         vertices: mesh.positions.len(),
     };
-    let pose = pose_of(&mesh, &boundary).ok_or_else(|| none(0))?;
+    let pose = Pose::of_oriented(&mesh, &boundary).ok_or_else(|| none(0))?;
     step(progress, Stage::Embed, 0.0)?;
     let area = mesh.area() / (pose.size * pose.size);
     let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
@@ -282,8 +285,8 @@ impl Embedder<'_> {
             .zip(displacement)
             .map(|(p, d)| *p + *d);
         let moved = self.mesh.with_positions(positions.collect());
-        let pose =
-            pose_of(&moved, &self.boundary).map_or(self.pose, |pose| pose.aligned_with(&self.pose));
+        let pose = Pose::of_oriented(&moved, &self.boundary)
+            .map_or(self.pose, |pose| pose.aligned_with(&self.pose));
         let now = windows(&clusters(&moved, &pose, self.finest), placement);
         let find = |index| {
             now.binary_search_by_key(&index, |window| window.index)
@@ -303,13 +306,7 @@ fn exponent(phases: &[f64], active: &[Window]) -> f64 {
     -Statistic::new(phases.iter().zip(active).map(read)).ln_p()
 }
 
-/// The weight of a window in the quadratic that touches its cosine from above at an error and has its minimum at 0.
+/// The weight of a window in a round: that of its parabola.
 fn majorised((error, window): (f64, &Window)) -> f64 {
-    let angle = TAU * error.abs();
-    let curvature = if angle > 0.0 {
-        libm::sin(angle) / angle
-    } else {
-        1.0
-    };
-    window.weight * curvature.max(LEAST_WEIGHT)
+    window.weight * curvature(error).max(LEAST_WEIGHT)
 }

@@ -6,8 +6,13 @@
 //!
 //! Displacements along vertex normals alone, or weighted by area, reach little more than half the exponent at equal RMS.
 
-use super::flux::{EDGE, Grid, MOST_PARTS, Placement, RADIUS, Window, for_each_near, sensitivity};
-use crate::geometry::{Pose, Quadrature};
+use super::cluster::{EDGE, MOST_PARTS};
+use super::grid::Grid;
+use super::lattice::{Placement, RADIUS, for_each_near};
+use super::lists::Lists;
+use super::moments::{MOMENTS, PerMoment, answers, orthonormal};
+use super::window::{Window, sensitivity};
+use crate::geometry::{Pose, Quadrature, conjugate_gradients};
 use crate::mesh::Mesh;
 use glam::DVec3;
 
@@ -15,11 +20,6 @@ use glam::DVec3;
 const BLOCK: usize = 512;
 const CG_STEPS: usize = 50;
 const CG_TOLERANCE: f64 = 1e-3;
-/// The moments that define a frame: volume, centre and spread.
-const MOMENTS: usize = 10;
-
-type PerMoment<T> = [T; MOMENTS];
-
 /// Displacements and fluxes are in lattice coordinates.
 pub struct Problem<'a> {
     triangles: &'a [[u32; 3]],
@@ -39,46 +39,6 @@ pub struct Problem<'a> {
     basis: PerMoment<PerMoment<f64>>,
     /// The last solution of the dual: the next one is near it.
     multipliers: Vec<f64>,
-}
-
-/// Lists of several lengths, one after the other.
-#[derive(Default)]
-struct Lists<T> {
-    ends: Vec<usize>,
-    items: Vec<T>,
-}
-
-impl<T> Lists<T> {
-    fn get(&self, list: usize) -> &[T] {
-        let start = if list == 0 { 0 } else { self.ends[list - 1] };
-        &self.items[start..self.ends[list]]
-    }
-
-    fn end_list(&mut self) {
-        self.ends.push(self.items.len());
-    }
-}
-
-impl<T: Copy + Default> Lists<T> {
-    /// From pairs of (list, item), visited twice.
-    fn from_pairs<I: Iterator<Item = (u32, T)>>(
-        num_lists: usize,
-        pairs: impl Fn() -> I,
-    ) -> Lists<T> {
-        let mut ends = vec![0; num_lists];
-        pairs().for_each(|(list, _)| ends[list as usize] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            (*end, total) = (total, total + *end);
-        }
-        let mut items = vec![T::default(); total];
-        for (list, item) in pairs() {
-            let end = &mut ends[list as usize];
-            items[*end] = item;
-            *end += 1;
-        }
-        Lists { ends, items }
-    }
 }
 
 impl<'a> Problem<'a> {
@@ -179,76 +139,29 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// How the moments answer to a vertex in units of its freedom: the integrals of its hat function times 1, y and y y^T
-    /// over the oriented surface, exact for triangles.
+    /// How the moments answer to a vertex in units of its freedom.
     fn moments(&self, vertex: usize) -> PerMoment<DVec3> {
         let mut moments = [DVec3::ZERO; MOMENTS];
         for &face in self.faces.get(vertex) {
-            let [a, b, c] = self.triangles[face as usize].map(|v| self.positions[v as usize]);
-            let y = self.positions[vertex];
-            let area = (b - a).cross(c - a) * (0.5 * self.freedom[vertex]);
-            let sum = a + b + c;
-            let first = (sum + y) / 12.0;
-            let second = |i: usize, j: usize| {
-                let own = y[i] * sum[j] + sum[i] * y[j] + 2.0 * y[i] * y[j];
-                (sum[i] * sum[j] + own + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]) / 60.0
-            };
-            let values = [
-                1.0 / 3.0,
-                first.x,
-                first.y,
-                first.z,
-                second(0, 0),
-                second(0, 1),
-                second(0, 2),
-                second(1, 1),
-                second(1, 2),
-                second(2, 2),
-            ];
+            let corners = self.triangles[face as usize].map(|v| self.positions[v as usize]);
+            let answers = answers(corners, self.positions[vertex], self.freedom[vertex]);
             moments
                 .iter_mut()
-                .zip(values)
-                .for_each(|(moment, value)| *moment += area * value);
+                .zip(answers)
+                .for_each(|(moment, answer)| *moment += answer);
         }
         moments
     }
 
-    /// Makes the moments orthonormal: `basis`, so far their inner products, becomes the transposed inverse of its Cholesky
-    /// factor, without what depends on those before it.
+    /// Makes the moments orthonormal, whose inner products are in `basis` so far.
     fn project(&mut self) {
-        let mut inverse = [[0.0; MOMENTS]; MOMENTS];
-        let products = self.basis;
-        let product = |a: &PerMoment<f64>, b: &PerMoment<f64>| -> f64 {
-            (0..MOMENTS)
-                .map(|i| a[i] * (0..MOMENTS).map(|j| products[i][j] * b[j]).sum::<f64>())
-                .sum()
-        };
-        for k in 0..MOMENTS {
-            let mut vector = [0.0; MOMENTS];
-            vector[k] = 1.0;
-            let whole = product(&vector, &vector);
-            for _ in 0..2 {
-                for before in &inverse[..k] {
-                    let part = product(before, &vector);
-                    vector
-                        .iter_mut()
-                        .zip(before)
-                        .for_each(|(v, b)| *v -= part * b);
-                }
-            }
-            let square = product(&vector, &vector);
-            let scale = if square > 1e-12 * whole {
-                1.0 / square.sqrt()
-            } else {
-                0.0
-            };
-            inverse[k] = vector.map(|v| v * scale);
-        }
+        self.basis = orthonormal(&self.basis);
         for coupling in &mut self.coupling {
             let raw = *coupling;
-            *coupling = inverse.map(|vector| vector.iter().zip(&raw).map(|(v, c)| v * c).sum());
+            *coupling = self
+                .basis
+                .map(|vector| vector.iter().zip(&raw).map(|(v, c)| v * c).sum());
         }
-        self.basis = inverse;
     }
 
     /// The windows' inner products.
@@ -372,42 +285,19 @@ impl<'a> Problem<'a> {
             };
             (0..l.len()).map(row).collect()
         };
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let precondition = |r: &[f64]| -> Vec<f64> {
             r.iter()
                 .zip(self.diagonal.iter().zip(weights))
                 .map(|(r, (d, w))| r / (d + mu / w))
                 .collect()
         };
-        let mut residual: Vec<f64> = goals
-            .iter()
-            .zip(apply(multipliers))
-            .map(|(goal, y)| goal - y)
-            .collect();
-        let enough = CG_TOLERANCE * CG_TOLERANCE * dot(goals, goals);
-        let mut scaled = precondition(&residual);
-        let mut direction = scaled.clone();
-        let mut square = dot(&residual, &scaled);
-        for _ in 0..CG_STEPS {
-            if dot(&residual, &residual) <= enough {
-                break;
-            }
-            let image = apply(&direction);
-            let length = square / dot(&direction, &image);
-            multipliers
-                .iter_mut()
-                .zip(&direction)
-                .for_each(|(l, d)| *l += length * d);
-            residual
-                .iter_mut()
-                .zip(&image)
-                .for_each(|(r, i)| *r -= length * i);
-            scaled = precondition(&residual);
-            let previous = std::mem::replace(&mut square, dot(&residual, &scaled));
-            direction
-                .iter_mut()
-                .zip(&scaled)
-                .for_each(|(d, s)| *d = s + square / previous * *d);
-        }
+        conjugate_gradients(
+            apply,
+            precondition,
+            goals,
+            multipliers,
+            CG_TOLERANCE,
+            CG_STEPS,
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! Finding the lattice again when an attack has moved the frame or smoothed the surface by an unknown strength: by the
 //! pilots alone, so that the other symbols, which never took part in the search, can testify without a charge for it.
 
-use super::flux::{Placement, Window};
-use super::{Lattice, cosine, held, phase};
+use super::lattice::{Lattice, Placement};
+use super::quantizer::{cosine, held, phase};
+use super::window::Window;
 use crate::code::Symbol;
 use crate::order::order_by;
 use crate::random::Random;

@@ -4,8 +4,8 @@
 //! increasing order of their cells. A cluster: the distance of its cell's number from the one before (LEB128), its centre
 //! within the cell in 3 bytes, its area vector in 6, its moment in 2, its weight in 1. All integers are little-endian.
 
-use super::LARGEST_AREA;
-use super::flux::{CELLS_PER_PITCH, Cluster, EXTENT, MOST_CLUSTERS, corner, fits, number};
+use super::cluster::{CELLS_PER_PITCH, Cluster, EXTENT, MOST_CLUSTERS, corner, fits, number};
+use super::pitch::LARGEST_AREA;
 use crate::carrier::{StoredError, possible, take};
 use glam::DVec3;
 use std::f64::consts::LN_2;

@@ -1,6 +1,6 @@
 //! Surfaces that may have been smoothed, by any strength: between those that were measured, the flux is interpolated.
 
-use super::flux::Window;
+use super::window::Window;
 use crate::geometry::spectral::{self, InverseFilter};
 use std::ops::Range;
 

@@ -1,6 +1,7 @@
 //! Generated models, keys and payloads.
 
 use super::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
+use glam::DVec3;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::{EmbedOptions, Embedding, Error, Key, Payload, embed};
 
@@ -143,4 +144,32 @@ fn sparse(builder: &mut GltfBuilder, mesh: &Mesh) -> usize {
 fn line(builder: &mut GltfBuilder) -> usize {
     let position = builder.positions(0, Layout::F32, &[[0.0; 3], [1.0; 3], [2.0, 0.0, 1.0]]);
     builder.mesh(&[primitive(position, None, 3)])
+}
+
+/// Uniform in [0, 1).
+pub fn random(address: u64) -> f64 {
+    key(7).prf("test").at(address).0 as f64 / 18_446_744_073_709_551_616.0
+}
+
+/// A box of twelve triangles, from the origin on.
+pub fn cuboid(sides: DVec3) -> Mesh {
+    let corner = |v: u32| {
+        let side = |axis: usize| f64::from(v >> axis & 1) * sides[axis];
+        DVec3::new(side(0), side(1), side(2))
+    };
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    Mesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
+    }
 }

@@ -1,10 +1,10 @@
 //! The study of errors, Fig. 5.
 
-use meshmark::internals::carrier::osveta::{Barycentre, Ranking};
 use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::paper::figure_5::{Case, Errors, Finding, Hosts, errors, figure_5};
+use meshmark::internals::paper::{Barycentre, Ranking};
+use meshmark::internals::paper::{Smoothing, Spread};
 use meshmark::internals::progress::ignore;
-use meshmark::internals::study::errors::{Case, Errors, Finding, Hosts, errors, figure_5};
-use meshmark::internals::study::{Smoothing, Spread};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn pebble() -> Mesh {

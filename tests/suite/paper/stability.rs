@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use meshmark::internals::attack::{reorder, similarity};
-use meshmark::internals::carrier::osveta::{Ranking, Stability, rank};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
+use meshmark::internals::paper::{Ranking, Stability, rank};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn is_decreasing(found: &Stability) -> bool {

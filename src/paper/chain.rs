@@ -1,9 +1,9 @@
 //! The paper's chain: message -> LDPC -> runs -> sparse QIM -> mesh, and back.
 
+use super::run_length::{self, Channel};
 use super::sparse_qim::SparseQim;
 use super::spherical::{Barycentre, Spherical};
 use crate::carrier::CarrierError;
-use crate::code::run_length::{self, Channel};
 use crate::code::{Block, Decoded};
 use crate::geometry::diagonal;
 use crate::key::Key;

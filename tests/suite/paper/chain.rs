@@ -1,27 +1,22 @@
-//! The chain of texts: codes, runs, sparse QIM, hosts and cells. Sections and equations are those of Vasic 2012.
+//! The paper's system: runs, sparse QIM, spherical coordinates, hosts. Sections and equations are those of Vasic 2012.
 
-use crate::support::fixtures::{asteroid, key};
+use crate::support::fixtures::{asteroid, key, random};
 use glam::DVec3;
 use meshmark::internals::attack::{catmull_clark, noise, reorder, similarity, simplify};
-use meshmark::internals::carrier::osveta::{
-    Barycentre, Cells, Chain, Embedded, Ranking, SparseQim, Spherical, cells, quantize, rank,
-};
-use meshmark::internals::code::run_length::{self, Channel};
-use meshmark::internals::code::{Block, TextCheck, TextError};
-use meshmark::internals::detection::{LN_P_FOUND, union};
+use meshmark::internals::carrier::qim::quantize;
+use meshmark::internals::code::Block;
 use meshmark::internals::geometry::Distortion;
 use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::paper::run_length::{self, Channel};
+use meshmark::internals::paper::{
+    Barycentre, Chain, Embedded, Ranking, SparseQim, Spherical, rank,
+};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const CLEAN: Channel = Channel {
     insertion: 0.0,
     deletion: 0.0,
 };
-
-/// Uniform in [0, 1).
-fn random(address: u64) -> f64 {
-    key(7).prf("test").at(address).0 as f64 / 18_446_744_073_709_551_616.0
-}
 
 fn bits(text: &str) -> Vec<bool> {
     text.bytes()
@@ -153,85 +148,6 @@ fn run_length_survives_nothing_and_nonsense() {
     let nonsense = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0];
     let decoded = run_length::decode(&nonsense, 2, CLEAN);
     assert!(decoded.iter().all(|value| value.is_finite()), "{decoded:?}");
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn ldpc_corrects_noise_and_erasures() {
-    for block in Block::ALL {
-        let message: Vec<u8> = (0..block.message_bytes() as u8)
-            .map(|i| i.wrapping_mul(37))
-            .collect();
-        let word = block.encode(&message);
-        assert_eq!(word.len(), block.code_bits());
-        // Signs with a fifth erased, and noise of 0.6 of the signal.
-        let received: Vec<f64> = (0u64..)
-            .zip(&word)
-            .map(|(place, &bit)| {
-                let noise = (0..12).map(|i| random(1000 * place + i)).sum::<f64>() - 6.0;
-                let signal = if bit { -1.0 } else { 1.0 };
-                if place % 5 == 0 {
-                    0.0
-                } else {
-                    signal + 0.6 * noise
-                }
-            })
-            .collect();
-        let decoded = block.decode(&received);
-        assert!(decoded.is_codeword);
-        assert_eq!(decoded.message, message, "{block:?}");
-        let inverted: Vec<f64> = received.iter().map(|value| -value).collect();
-        let complement: Vec<u8> = message.iter().map(|byte| !byte).collect();
-        let decoded = block.decode(&inverted);
-        assert!(decoded.is_codeword, "the complement of a codeword is one");
-        assert_eq!(decoded.message, complement);
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn ldpc_says_when_it_found_nothing() {
-    let found = |seed: u64| {
-        let noise = |place| 2.0 * random(500 * seed + place) - 1.0;
-        let received: Vec<f64> = (0..256).map(noise).collect();
-        Block::Tc256.decode(&received).is_codeword
-    };
-    assert_eq!((0..20).filter(|&seed| found(seed)).count(), 0);
-    let decoded = Block::Tc128.decode(&[f64::NAN, f64::INFINITY]);
-    assert_eq!(decoded.message.len(), 8);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn text_check_knows_its_key_and_its_text() {
-    let check = TextCheck::new(&key(1));
-    for text in ["a", "Grüße", "© Ada Lovelace 1843, London"] {
-        let block = Block::for_text(text).unwrap();
-        let message = check.message(text, block).unwrap();
-        assert_eq!(message.len(), block.message_bytes());
-        assert_eq!(check.text(&message).as_deref(), Some(text));
-        assert_eq!(TextCheck::new(&key(2)).text(&message), None);
-        for bit in 0..8 * message.len() {
-            let mut other = message.clone();
-            other[bit / 8] ^= 1 << (bit % 8);
-            assert_eq!(check.text(&other), None, "bit {bit} of {text}");
-        }
-        let complement: Vec<u8> = message.iter().map(|byte| !byte).collect();
-        assert_eq!(check.text(&complement), None);
-    }
-    assert_eq!(Block::for_text("12345"), Ok(Block::Tc128));
-    assert_eq!(Block::for_text("123456"), Ok(Block::Tc256));
-    assert_eq!(Block::for_text("12345678901234"), Ok(Block::Tc512));
-    assert_eq!(check.text(&[]), None);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn text_that_does_not_fit_is_refused() {
-    let check = TextCheck::new(&key(1));
-    assert_eq!(Block::for_text(""), Err(TextError::Empty));
-    assert_eq!(Block::for_text("a\0b"), Err(TextError::Nul));
-    let error = Block::for_text(&"x".repeat(30)).unwrap_err();
-    assert_eq!(error.code(), "text.too-long");
-    let error = check.message("123456", Block::Tc128).unwrap_err();
-    let (bytes, capacity) = (6, 5);
-    assert_eq!(error, TextError::TooLong { bytes, capacity });
 }
 
 /// Q_u(x) = D [(x - (-1)^(u+1) D/4) / D] + (-1)^(u+1) D/4.
@@ -441,67 +357,4 @@ fn chain_refuses_too_few_hosts() {
     assert_eq!(Chain::num_hosts(Block::Tc128), 1152);
     assert_eq!(Chain::capacity(1151), None);
     assert_eq!(Chain::capacity(5000), Some(Block::Tc512));
-}
-
-/// An ellipsoid with bumps: a frame whose axes differ, and distances that do.
-fn pebble() -> Mesh {
-    let mesh = shapes::asteroid(80, 160);
-    let stretch = DVec3::new(1.0, 0.8, 0.6);
-    mesh.with_positions(mesh.positions.iter().map(|&p| p * stretch).collect())
-}
-
-const STEP: f64 = 0.012;
-
-fn in_cells(mesh: &Mesh, owner: u8, message: &[u8]) -> Mesh {
-    let cells = Cells::new(&key(owner), Block::Tc128, STEP);
-    let moved = cells.embed(mesh, message).unwrap();
-    let positions = mesh.positions.iter().zip(moved).map(|(p, d)| *p + d);
-    mesh.with_positions(positions.collect())
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn cells_are_read_blind() {
-    let mesh = pebble();
-    let marked = in_cells(&mesh, 1, &MESSAGE);
-    let cells = Cells::new(&key(1), Block::Tc128, STEP);
-    for (name, suspect) in [
-        ("none", marked.clone()),
-        ("noise", noise(&marked, 0.001, 1)),
-        ("meshsmooth", catmull_clark(&marked, 1)),
-        ("simplify", simplify(&marked, 0.3)),
-    ] {
-        let suspect = similarity(&reorder(&suspect, 3), 4);
-        let readings = cells.read(&suspect);
-        let right = readings
-            .iter()
-            .find(|reading| reading.decoded.message == MESSAGE);
-        let right = right.unwrap_or_else(|| panic!("{name}"));
-        assert!(right.decoded.is_codeword);
-        let word = Block::Tc128.encode(&MESSAGE);
-        let charge = libm::log(f64::from(cells::NUM_TESTS)) + 64.0 * std::f64::consts::LN_2;
-        let ln_p = union(right.statistic(&word).ln_p(), charge);
-        assert!(ln_p < LN_P_FOUND, "{name}: {ln_p}");
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn cells_say_nothing_to_another_key() {
-    let marked = in_cells(&pebble(), 1, &MESSAGE);
-    let word = Block::Tc128.encode(&MESSAGE);
-    for stranger in 2..6 {
-        let readings = Cells::new(&key(stranger), Block::Tc128, STEP).read(&marked);
-        assert!(!readings.is_empty());
-        for reading in readings {
-            assert_ne!(reading.decoded.message, MESSAGE);
-            assert!(reading.statistic(&word).ln_p() > -20.0);
-        }
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn cells_of_nothing() {
-    let cells = Cells::new(&key(1), Block::Tc128, STEP);
-    assert!(cells.read(&Mesh::default()).is_empty());
-    let error = cells.embed(&Mesh::default(), &MESSAGE).unwrap_err();
-    assert_eq!(error.code(), "carrier.too-few-hosts");
 }

@@ -1,7 +1,7 @@
 //! Spherical coordinates about a barycentre: the distance from it, in units of a scale, is what is quantized; the direction
 //! stays.
 
-use crate::geometry::{Pose, oriented};
+use crate::geometry::Pose;
 use crate::mesh::Mesh;
 use glam::DVec3;
 
@@ -38,7 +38,7 @@ impl Spherical {
                 let [a, b, c] = mesh.corners(triangle);
                 ((b - a).cross(c - a).length(), (a + b + c) / 3.0)
             })),
-            Barycentre::Volume => frame(mesh).map(|pose| (pose.centre, pose.size))?,
+            Barycentre::Volume => Pose::of_surface(mesh).map(|pose| (pose.centre, pose.size))?,
         };
         let is_usable = origin.is_finite() && scale > 0.0 && scale.is_finite();
         is_usable.then_some(Spherical { origin, scale })
@@ -56,12 +56,6 @@ impl Spherical {
             None => point,
         }
     }
-}
-
-/// The frame of a surface: by volume moments, or by area moments where it encloses next to nothing.
-pub(super) fn frame(mesh: &Mesh) -> Option<Pose> {
-    let (oriented, boundary) = oriented(mesh);
-    Pose::of_volume(&oriented, &boundary).or_else(|| Pose::of(&oriented))
 }
 
 /// Weighted mean of points, and the weighted mean of their distances from it.

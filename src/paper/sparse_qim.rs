@@ -1,18 +1,12 @@
 //! Sparse quantization index modulation: equations 5 to 7 of Vasic 2012, with a keyed projection and a keyed dither, and soft
 //! output.
 
-use crate::key::{Key, Prf};
+use crate::carrier::qim::quantize;
+use crate::key::{Key, Prf, unit};
 use std::f64::consts::TAU;
 
 /// Standard deviation of what disturbs a projection, in steps: about that of a smoothing that still can be read through.
 const DISTURBANCE: f64 = 0.2;
-
-/// Eq. 5: the point of the quantizer of a bit that is nearest to `x`. The nominal quantizer's points, the multiples of the
-/// step, are moved up by a quarter of it for a 1 and down for a 0.
-pub fn quantize(x: f64, bit: bool, step: f64) -> f64 {
-    let offset = if bit { 0.25 * step } else { -0.25 * step };
-    step * ((x - offset) / step).round() + offset
-}
 
 /// Spreads each symbol over L elements of a vector, by a unit vector that the key chooses for that symbol.
 pub struct SparseQim {
@@ -69,11 +63,6 @@ impl SparseQim {
     fn dither(&self, symbol: usize) -> f64 {
         unit(self.dithers.at(symbol as u64).0) * self.step
     }
-}
-
-/// Uniform in [0, 1).
-pub(super) fn unit(random: u64) -> f64 {
-    (random >> 11) as f64 / (1u64 << 53) as f64
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

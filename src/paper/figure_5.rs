@@ -1,9 +1,13 @@
 //! The paper's Fig. 5: how often bits are wrong, for random and for chosen hosts, against the smoothing and against the strength,
 //! before the codes and after; and the same for each way of finding hosts again.
 
-use super::{Smoothing, Spread};
+use super::chain::Chain;
+use super::smoothing::Smoothing;
+use super::spherical::{Barycentre, Spherical};
+use super::spread::Spread;
+use super::stability::{Ranking, rank};
 use crate::carrier::CarrierError;
-use crate::carrier::osveta::{Barycentre, CellReading, Cells, Chain, Ranking, Spherical, rank};
+use crate::carrier::direction::{CellReading, Cells};
 use crate::code::{Block, TextCheck};
 use crate::geometry::diagonal;
 use crate::key::Key;

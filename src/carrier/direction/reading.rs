@@ -1,28 +1,12 @@
-//! Hosts without an order, the mended blind way: the direction of a vertex from the centroid of the enclosed volume tells
-//! which bit it holds, so a vertex that is lost, or that comes in between, costs energy and nothing else.
-//!
-//! The sphere of directions is cut into five cells for each bit of a codeword, which the key distributes. Every vertex is moved
-//! along its ray to the nearest point of its bit's quantizer, shifted by its cell's own keyed dither. A detector sums sines of the
-//! phases of a bit's vertices. It tries what the frame leaves open: the signs of its axes, and the scale by 2 %.
-//!
-//! Where distances hardly differ, a scale that is wrong by half a step turns all bits over, and the complement of a
-//! codeword is a codeword. No dither tells the two apart, for it moves both: what reads a message must try both against check
-//! bits.
+//! Reading notes: what the cells of a suspect say, in every turn and at every scale that its frame leaves open.
 
-use super::hosts::TURNS;
-use super::sparse_qim::{quantize, unit};
-use super::spherical::frame;
-use crate::carrier::CarrierError;
-use crate::code::{Block, Decoded};
+use super::cells::{Cells, Ray};
+use crate::code::Decoded;
 use crate::detection::Statistic;
-use crate::key::Key;
+use crate::geometry::Pose;
 use crate::mesh::Mesh;
-use crate::order::order_by;
 use glam::{DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
-
-/// Cells of a bit.
-const REPETITIONS: usize = 5;
+use std::f64::consts::TAU;
 
 /// Scales that are tried: 1 - 2 % to 1 + 2 %.
 const SCALES: u32 = 81;
@@ -35,14 +19,8 @@ const CHUNK: usize = 2048;
 /// Ways of reading whose words are decoded.
 const CANDIDATES: usize = 6;
 
-/// Words that are read from a mesh: in each of four turns and at each scale one, and its complement.
-pub const NUM_TESTS: u32 = 4 * SCALES * 2;
-
 /// A vertex nearer than this to its cell's border, as a chord of the unit sphere with 640 cells, counts less.
 const MARGIN: f64 = 0.02;
-
-/// Vertices that a bit needs to stand more than rounding.
-const VERTICES_PER_BIT: usize = 16;
 
 /// Evidence of one bit is cut off here.
 const MOST: f64 = 12.0;
@@ -50,18 +28,8 @@ const MOST: f64 = 12.0;
 /// Limit of what one cell says against chance, in standard deviations: cells with many vertices are no better witnesses.
 const MOST_OF_CELL: f64 = 2.0;
 
-/// What embedder and detector agree on.
-pub struct Cells {
-    block: Block,
-    /// Of the quantizers, in units of the frame.
-    step: f64,
-    /// Unit vectors, descending along z.
-    directions: Vec<DVec3>,
-    /// The bit of each cell.
-    bits: Vec<u32>,
-    /// The dither of each cell, in steps.
-    dithers: Vec<f64>,
-}
+/// Words that are read from a mesh: in each of four turns and at each scale one, and its complement.
+pub const NUM_TESTS: u32 = 4 * SCALES * 2;
 
 /// One way of reading a suspect.
 #[derive(Clone, Debug)]
@@ -74,13 +42,6 @@ pub struct CellReading {
     cells: Vec<(u32, f64, f64)>,
 }
 
-/// A vertex in the frame.
-struct Ray {
-    /// Distance from the centroid, in units of the frame.
-    radius: f64,
-    direction: DVec3,
-}
-
 /// Rays as they lie in the cells after a turn.
 struct View {
     /// The cell and the weight (0 to 1) of every ray.
@@ -90,63 +51,14 @@ struct View {
 }
 
 impl Cells {
-    /// The cells of a key for a code, and a step in units of the frame.
-    pub fn new(key: &Key, block: Block, step: f64) -> Cells {
-        let count = REPETITIONS * block.code_bits();
-        let address = |cell: usize| ((count as u64) << 32) | cell as u64;
-        let (places, dithers) = (key.prf("cells/place"), key.prf("cells/dither"));
-        let shuffled = order_by((0..count).map(|cell| places.at(address(cell)).0));
-        let mut bits = vec![0; count];
-        for (place, &(_, cell)) in shuffled.iter().enumerate() {
-            bits[cell as usize] = (place / REPETITIONS) as u32;
-        }
-        let dither = |cell| unit(dithers.at(address(cell)).0);
-        Cells {
-            block,
-            step,
-            directions: spiral(count),
-            bits,
-            dithers: (0..count).map(dither).collect(),
-        }
-    }
-
-    /// Vertices that a block needs.
-    pub fn num_vertices(block: Block) -> usize {
-        VERTICES_PER_BIT * block.code_bits()
-    }
-
-    /// The longest block that a number of vertices carries.
-    pub fn capacity(num_vertices: usize) -> Option<Block> {
-        let fits = |block: &Block| Cells::num_vertices(*block) <= num_vertices;
-        Block::ALL.into_iter().rev().find(fits)
-    }
-
-    /// The displacement of all V vertices that writes a message.
-    pub fn embed(&self, mesh: &Mesh, message: &[u8]) -> Result<Vec<DVec3>, CarrierError> {
-        let pose = frame(mesh).ok_or(CarrierError::TooFewHosts {
-            needed: Cells::num_vertices(self.block),
-            available: 0,
-        })?;
-        let word = self.block.encode(message);
-        let displacement = |&position: &DVec3| {
-            let ray = Ray::new(pose.canonical(position));
-            let (cell, _) = self.cell(ray.direction);
-            let dither = self.dithers[cell] * self.step;
-            let bit = word[self.bits[cell] as usize];
-            let radius = quantize(ray.radius - dither, bit, self.step) + dither;
-            pose.axes * ray.direction * ((radius - ray.radius) * pose.size)
-        };
-        Ok(mesh.positions.iter().map(displacement).collect())
-    }
-
     /// The ways of reading a mesh that stand out most, each decoded; none without a frame.
     pub fn read(&self, mesh: &Mesh) -> Vec<CellReading> {
-        let Some(pose) = frame(mesh) else {
+        let Some(pose) = Pose::of_surface(mesh) else {
             return Vec::new();
         };
         let points = mesh.positions.iter().map(|&p| pose.canonical(p));
         let rays: Vec<Ray> = points.map(Ray::new).collect();
-        let views = TURNS.map(|turn| self.view(&rays, turn));
+        let views = Pose::HALF_TURNS.map(|turn| self.view(&rays, turn));
         let mut peaks = Vec::new();
         for (energies, view) in self.scan(&rays, &views).iter().zip(&views) {
             let scales: Vec<f64> = scales().collect();
@@ -165,7 +77,7 @@ impl Cells {
 
     /// The energy of the bits, by turn and scale.
     fn scan(&self, rays: &[Ray], views: &[View; 4]) -> [Vec<f64>; 4] {
-        let num_cells = self.directions.len();
+        let num_cells = self.sphere.len();
         let mut sums = vec![DVec2::ZERO; SCALES as usize * views.len() * num_cells];
         for first in (0..rays.len()).step_by(CHUNK) {
             let chunk = first..(first + CHUNK).min(rays.len());
@@ -191,7 +103,7 @@ impl Cells {
     }
 
     fn reading(&self, phasors: &[DVec2], view: &View) -> CellReading {
-        let mut sums = vec![DVec2::ZERO; self.directions.len()];
+        let mut sums = vec![DVec2::ZERO; self.sphere.len()];
         gather(&mut sums, phasors, &view.places);
         let values = self.values(&sums);
         let clip = |z: &f64| (2.0 * z).clamp(-MOST, MOST);
@@ -214,13 +126,13 @@ impl Cells {
 
     /// The cells and weights of rays that are turned.
     fn view(&self, rays: &[Ray], turn: DVec3) -> View {
-        let margin = MARGIN * (640.0 / self.directions.len() as f64).sqrt();
+        let margin = MARGIN * (640.0 / self.sphere.len() as f64).sqrt();
         let place = |ray: &Ray| {
-            let (cell, apart) = self.cell(ray.direction * turn);
+            let (cell, apart) = self.sphere.cell(ray.direction * turn);
             (cell as u32, (apart / margin).min(1.0))
         };
         let places: Vec<(u32, f64)> = rays.iter().map(place).collect();
-        let mut energies = vec![0.0; self.directions.len()];
+        let mut energies = vec![0.0; self.sphere.len()];
         for &(cell, weight) in &places {
             energies[cell as usize] += weight * weight;
         }
@@ -256,35 +168,6 @@ impl Cells {
         let normalized = |(total, variance): (f64, f64)| total / variance.sqrt();
         bits.into_iter().map(normalized).collect()
     }
-
-    /// The cell of a direction, and how much nearer its centre is than any other, as chords. Centres lie in order of z.
-    fn cell(&self, direction: DVec3) -> (usize, f64) {
-        let centres = &self.directions;
-        let middle = centres.partition_point(|centre| centre.z > direction.z);
-        let (mut best, mut nearest, mut second) = (0, f64::INFINITY, f64::INFINITY);
-        let mut visit = |cell: usize| {
-            let rise = centres[cell].z - direction.z;
-            if rise * rise >= second {
-                return false;
-            }
-            let square = centres[cell].distance_squared(direction);
-            if square < nearest {
-                (best, nearest, second) = (cell, square, nearest);
-            } else {
-                second = second.min(square);
-            }
-            true
-        };
-        let (mut above, mut below) = (middle, middle);
-        let (mut goes_up, mut goes_down) = (true, true);
-        while goes_up || goes_down {
-            goes_up = goes_up && above > 0 && visit(above - 1);
-            above -= usize::from(goes_up);
-            goes_down = goes_down && below < centres.len() && visit(below);
-            below += usize::from(goes_down);
-        }
-        (best, second.sqrt() - nearest.sqrt())
-    }
 }
 
 impl CellReading {
@@ -307,15 +190,6 @@ impl CellReading {
     }
 }
 
-impl Ray {
-    fn new(point: DVec3) -> Ray {
-        Ray {
-            radius: point.length(),
-            direction: point.normalize_or(DVec3::Z),
-        }
-    }
-}
-
 /// Adds weighted phasors to the sums of their cells.
 fn gather(sums: &mut [DVec2], phasors: &[DVec2], places: &[(u32, f64)]) {
     for (phasor, &(cell, weight)) in phasors.iter().zip(places) {
@@ -326,17 +200,4 @@ fn gather(sums: &mut [DVec2], phasors: &[DVec2], places: &[(u32, f64)]) {
 /// The scales that are tried.
 fn scales() -> impl Iterator<Item = f64> {
     (0..SCALES).map(|number| LEAST_SCALE + SCALE_STEP * f64::from(number))
-}
-
-/// Directions that cover the sphere evenly: a Fibonacci spiral, descending along z.
-fn spiral(count: usize) -> Vec<DVec3> {
-    let turn = PI * (1.0 + 5f64.sqrt());
-    let direction = |number: usize| {
-        let place = number as f64 + 0.5;
-        let z = 1.0 - 2.0 * place / count as f64;
-        let (sine, cosine) = libm::sincos(turn * place);
-        let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * cosine, radius * sine, z)
-    };
-    (0..count).map(direction).collect()
 }

@@ -1,20 +1,12 @@
 //! Three ways to find the hosts again: by their indices, by ranking again, by the original.
 
 use super::chain::{Chain, Received};
-use super::spherical::{Spherical, frame};
+use super::run_length::Channel;
+use super::spherical::Spherical;
 use super::stability::{Ranking, rank};
-use crate::code::run_length::Channel;
 use crate::geometry::{Pose, Surface};
 use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
-
-/// Half turns about the axes of a frame: what its axes' signs leave open.
-pub(super) const TURNS: [DVec3; 4] = [
-    DVec3::new(1.0, 1.0, 1.0),
-    DVec3::new(1.0, -1.0, -1.0),
-    DVec3::new(-1.0, 1.0, -1.0),
-    DVec3::new(-1.0, -1.0, 1.0),
-];
 
 /// Hosts that are known by name come in their order.
 const IN_ORDER: Channel = Channel {
@@ -90,7 +82,7 @@ impl Chain<'_> {
 
 /// The suspect where the original is: of the four ways in which frames fit, the one in which the original's vertices are nearest.
 fn aligned(suspect: &Mesh, original: &Mesh) -> Option<Mesh> {
-    let (from, to) = (frame(suspect)?, frame(original)?);
+    let (from, to) = (Pose::of_surface(suspect)?, Pose::of_surface(original)?);
     let every = original.positions.len().div_ceil(SAMPLES).max(1);
     let distance = |mesh: &Mesh| {
         let surface = Surface::new(mesh);
@@ -98,7 +90,7 @@ fn aligned(suspect: &Mesh, original: &Mesh) -> Option<Mesh> {
         let nearest = samples.filter_map(|&point| Some(surface.nearest(point)?.distance));
         nearest.sum::<f64>()
     };
-    let turned = TURNS.map(|turn| moved(suspect, &from, &to, turn));
+    let turned = Pose::HALF_TURNS.map(|turn| moved(suspect, &from, &to, turn));
     let candidates = turned.into_iter().map(|mesh| (distance(&mesh), mesh));
     candidates
         .min_by(|a, b| a.0.total_cmp(&b.0))

@@ -1,7 +1,7 @@
-//! What the study shows on a mesh.
+//! Fig. 3 and Fig. 4: what the study shows on a mesh, the hosts before and after smoothing among it.
 
-use super::{Smoothing, ranked};
-use crate::carrier::osveta::Ranking;
+use super::smoothing::Smoothing;
+use super::stability::{Ranking, ranked};
 use crate::geometry::{diagonal, fitted_curvature, vertex_normals};
 use crate::mesh::{Edges, Mesh};
 

@@ -1,4 +1,4 @@
-//! The paper's two vectors: stabilities in decreasing order, and the vertices that they belong to.
+//! Section III.A, host vertex selection: the paper's two vectors, stabilities in decreasing order and the vertices that they belong to.
 
 use crate::geometry::{
     collapse_costs, curvature_integrals, dihedrals, face_areas, fitted_curvature,
@@ -6,6 +6,7 @@ use crate::geometry::{
 };
 use crate::mesh::{Edges, Mesh, Rings};
 use crate::order::order_by;
+use crate::random::Random;
 use glam::DVec3;
 
 /// A vertex is an error of topology where its nearest neighbour is farther away than so many mean edges of the mesh. The paper
@@ -120,6 +121,30 @@ pub fn rank(mesh: &Mesh, ranking: Ranking) -> Stability {
         stability: order.iter().map(|&v| score(v)).collect(),
         order,
     }
+}
+
+/// The vertices in decreasing order of stability, equals at random: by index the original vertices, which come first in every
+/// smoothed mesh, would win every tie.
+pub fn ranked(mesh: &Mesh, ranking: Ranking, seed: u64) -> Vec<u32> {
+    let names = Random::new(seed).permutation(mesh.positions.len());
+    let mut renamed = Mesh {
+        positions: mesh.positions.clone(),
+        triangles: mesh
+            .triangles
+            .iter()
+            .map(|triangle| triangle.map(|vertex| names[vertex as usize]))
+            .collect(),
+    };
+    let mut vertices = vec![0; names.len()];
+    for (vertex, (&name, &position)) in (0..).zip(names.iter().zip(&mesh.positions)) {
+        renamed.positions[name as usize] = position;
+        vertices[name as usize] = vertex;
+    }
+    let order = rank(&renamed, ranking).order;
+    order
+        .into_iter()
+        .map(|name| vertices[name as usize])
+        .collect()
 }
 
 /// The weighted mean of ranks.

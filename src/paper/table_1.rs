@@ -7,8 +7,9 @@
 //! [`Preparation::Simplify`](super::Preparation::Simplify). Meshes that hardly had to be simplified differ more, and no rule
 //! fits both columns.
 
-use super::{Smoothing, Spread, ranked};
-use crate::carrier::osveta::Ranking;
+use super::smoothing::Smoothing;
+use super::spread::Spread;
+use super::stability::{Ranking, ranked};
 use crate::mesh::Mesh;
 use crate::order::order_by;
 use crate::random::Random;

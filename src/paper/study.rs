@@ -1,9 +1,10 @@
 //! The whole study of one mesh.
 
-use super::errors::{Figure5, figure_5};
-use super::{HostsOptions, HostsRow, Smoothing, hosts};
+use super::figure_5::{Figure5, figure_5};
+use super::smoothing::Smoothing;
+use super::spherical::Barycentre;
+use super::table_1::{HostsOptions, HostsRow, hosts};
 use crate::carrier::CarrierError;
-use crate::carrier::osveta::Barycentre;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage, step};
 

@@ -1,10 +1,10 @@
 //! The study of the seed paper: hosts found again.
 
-use meshmark::internals::carrier::osveta::{Ranking, rank};
 use meshmark::internals::mesh::{Mesh, shapes};
-use meshmark::internals::study::{
+use meshmark::internals::paper::{
     HostsOptions, HostsRow, Preparation, Rule, RuleCounts, Smoothing, fields, hosts, trace,
 };
+use meshmark::internals::paper::{Ranking, rank};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A mesh of 3000 faces, as the paper's was made.

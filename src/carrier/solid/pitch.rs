@@ -1,0 +1,40 @@
+//! Pitches: how far apart a lattice's points are, by the area of the surface that it is laid through.
+
+use crate::geometry::Pose;
+use std::ops::Range;
+
+/// Distances of lattice points, in units of the frame: a fifth is about 4 % of the diagonal.
+pub const PITCHES: [f64; 6] = [0.05, 0.07, 0.1, 0.14, 0.2, 0.3];
+
+/// The area of a surface, in squared pitches, for which an embedder uses a pitch: some 1 500 to 3 500 windows. With fewer there is
+/// too little to say a message with, and more marks beside it drown it; with more, windows are so small that attacks reach into
+/// them. One pitch suits every surface whose area in its own frame is 2 to 160.
+pub const AREAS_TO_EMBED: Range<f64> = 800.0..1810.0;
+
+/// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
+pub const AREAS: Range<f64> = 680.0..2150.0;
+
+/// The largest area of a surface in squares of the finest pitch that it is read at: a suspect's, times what undoing a smoothing may
+/// add. What is larger is left out.
+pub const LARGEST_AREA: f64 = AREAS.end * SPIKY_IF_FEW;
+
+/// A filtered surface that is so many times larger than the suspect has spikes, and is left out.
+pub const SPIKY: f64 = 1.6;
+
+/// The same for meshes of few triangles.
+pub const SPIKY_IF_FEW: f64 = 3.0;
+
+/// Pitches that a surface is read at, at most: no three of them have the area between these bounds.
+pub const MOST_PITCHES: usize = 2;
+
+/// The pitches for a surface of an area in units of the frame.
+pub fn pitches(area: f64, areas: Range<f64>) -> impl Iterator<Item = f64> {
+    PITCHES
+        .into_iter()
+        .filter(move |pitch| areas.contains(&(area / (pitch * pitch))))
+}
+
+/// The pitches that a surface of an area is read at, the finest first.
+pub fn pitches_of(area: f64, pose: &Pose) -> Vec<f64> {
+    pitches(area / (pose.size * pose.size), AREAS).collect()
+}

@@ -1,0 +1,184 @@
+//! What a key reads in a suspect's surfaces.
+//!
+//! Three kinds of tests share the probability of a false alarm in equal parts, each charged for its own number: the suspect
+//! as it is, in all turns of its frame; the surfaces that undo what may have been done to it; and the symbols that are no
+//! pilots, where the pilots agree best after a search of which they know nothing (docs/SECURITY.md).
+
+use super::lattice::Lattice;
+use super::pitch::MOST_PITCHES;
+use super::quantizer::{STEPS, cosine, phase};
+use super::refine::{View, refine};
+use super::search::{Candidate, STRENGTHS, Search, num_nodes};
+use super::strength::{blend, weights};
+use super::surface::Surface;
+use super::window::{Window, windows};
+use crate::carrier::{Hypothesis, Reading};
+use crate::code::{SoftSymbol, Symbol};
+use crate::key::Key;
+use crate::progress::{Cancelled, Progress};
+use std::borrow::Cow;
+
+/// Kinds of tests.
+const KINDS: usize = 3;
+
+/// Reads surfaces with a key, in their order, until it is sure.
+pub fn read<'a>(
+    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
+    key: &Key,
+    progress: &mut dyn Progress,
+) -> Result<Reading, Cancelled> {
+    read_at(surfaces, Lattice::of(key), progress)
+}
+
+/// The same with the lattice of a key.
+fn read_at<'a>(
+    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
+    lattice: Lattice,
+    progress: &mut dyn Progress,
+) -> Result<Reading, Cancelled> {
+    let search = Search::of(surfaces, lattice, progress)?;
+    Ok(search.map_or_else(Reading::default, |search| search.conclude()))
+}
+
+impl Search<'_> {
+    /// All windows of a candidate's surface at a view.
+    fn see(&self, candidate: &Candidate, view: &View) -> Vec<Window> {
+        let parts = weights(&candidate.strengths, view.strength);
+        let lists: Vec<(Vec<Window>, f64)> = parts
+            .into_iter()
+            .map(|(part, weight)| {
+                let node = &self.nodes[candidate.nodes[part]];
+                (windows(&node.clusters, &view.placement), weight)
+            })
+            .collect();
+        blend(
+            lists
+                .iter()
+                .map(|(list, weight)| (list.as_slice(), *weight)),
+        )
+    }
+
+    /// What windows say, read with a candidate's step at a view.
+    fn symbols(&self, candidate: &Candidate, view: &View, windows: Vec<Window>) -> Vec<SoftSymbol> {
+        let step = candidate.step / view.placement.pitch;
+        let read = |window: Window| {
+            let (dither, symbol) = self.lattice.at(window.index);
+            let weight = window.weight.max(0.0);
+            SoftSymbol {
+                symbol,
+                value: weight * cosine(phase(window.flux / step, dither)),
+                weight,
+            }
+        };
+        windows.into_iter().map(read).collect()
+    }
+
+    fn conclude(&self) -> Reading {
+        let num_views = |num_pitches| num_pitches * self.turns.len() * STEPS.len();
+        let num_own = num_views(self.nodes[0].surface.pitches.len());
+        let num_undone = num_views(MOST_PITCHES) * (1 + STRENGTHS * num_nodes());
+        let mut hypotheses = Vec::new();
+        for (candidates, num_declared) in [(&self.own, num_own), (&self.undone, num_undone)] {
+            hypotheses.extend(candidates.iter().map(|candidate| {
+                let view = &candidate.view;
+                Hypothesis {
+                    symbols: self.symbols(candidate, view, self.see(candidate, view)),
+                    ln_num_tests: libm::log((KINDS * num_declared) as f64),
+                }
+            }));
+        }
+        let to_refine = [
+            (self.own.first(), 4.5),
+            (self.undone.first(), 9.0),
+            (self.scanned.as_ref(), 9.0),
+        ];
+        for (candidate, least) in to_refine {
+            // What is less than the best of so many that chance gives leads nowhere, and there is no need where all is clear.
+            let is_worth_it =
+                |candidate: &&Candidate| candidate.evidence >= least && !self.is_sure();
+            let Some(candidate) = candidate.filter(is_worth_it) else {
+                continue;
+            };
+            let candidate = self.with_whole_family(candidate);
+            let see = |view: &View| self.see(&candidate, view);
+            let view = refine(&see, &candidate.view, &self.lattice, candidate.step);
+            let mut symbols = self.symbols(&candidate, &view, see(&view));
+            symbols.retain(|soft| soft.symbol != Symbol::Pilot);
+            hypotheses.push(Hypothesis {
+                symbols,
+                ln_num_tests: libm::log((KINDS * to_refine.len()) as f64),
+            });
+        }
+        Reading {
+            hypotheses,
+            num_addresses: self.num_windows,
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
+mod tests {
+    use super::super::search::FOLLOWED;
+    use super::super::surfaces::Surfaces;
+    use super::*;
+    use crate::mesh::{Mesh, shapes};
+    use crate::progress::ignore;
+
+    fn reading(surfaces: &[Surface], lattice: Lattice) -> Reading {
+        read_at(
+            &mut surfaces.iter().map(Cow::Borrowed),
+            lattice,
+            &mut ignore,
+        )
+        .unwrap()
+    }
+
+    /// What is followed, what it is charged, and what each symbol weighs.
+    fn choices(reading: &Reading) -> Vec<(f64, Vec<(Symbol, f64)>)> {
+        let ways = reading.hypotheses.iter();
+        ways.map(|way| {
+            let symbols = way.symbols.iter().map(|soft| (soft.symbol, soft.weight));
+            (way.ln_num_tests, symbols.collect())
+        })
+        .collect()
+    }
+
+    /// docs/SECURITY.md, 9 and 10: neither which ways are followed nor any weight depends on the dithers that testify.
+    #[test]
+    fn nothing_that_is_chosen_depends_on_the_dithers_that_testify() {
+        let rock = shapes::asteroid(20, 30);
+        let of = |mesh: &Mesh, stages: fn(Surfaces) -> Surfaces| -> Vec<Surface> {
+            stages(Surfaces::new(mesh)).collect()
+        };
+        let suspects = [
+            ("undone", of(&rock, Surfaces::first_kind), 3),
+            ("scanned", of(&shapes::torus(40, 24), Surfaces::plain), 3),
+        ];
+        let mut num_split = 0;
+        for (name, surfaces, keys) in &suspects {
+            for number in 0..*keys {
+                let key = Key::from_bytes(&[number + 1; Key::BYTES]).unwrap();
+                let drawn = reading(surfaces, Lattice::of(&key));
+                for other in 0..3 {
+                    let other = Key::from_bytes(&[100 + other; Key::BYTES]).unwrap();
+                    let lattice = Lattice::of(&key).redrawn(&other);
+                    let redrawn = reading(surfaces, lattice);
+                    assert!(choices(&redrawn) == choices(&drawn), "{name}, key {number}");
+                    let values = |reading: &Reading| -> Vec<f64> {
+                        let ways = reading.hypotheses.iter();
+                        ways.flat_map(|way| way.symbols.iter().map(|soft| soft.value))
+                            .collect()
+                    };
+                    assert_ne!(
+                        values(&redrawn),
+                        values(&drawn),
+                        "{name}: nothing was redrawn"
+                    );
+                }
+                num_split += drawn.hypotheses.len().saturating_sub(2 * FOLLOWED);
+            }
+        }
+        assert!(num_split > 0, "no search was begun");
+    }
+}

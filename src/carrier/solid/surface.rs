@@ -1,0 +1,84 @@
+//! A surface of a suspect, as it is kept: in small pieces, in its own frame, with how it came from the suspect.
+
+use super::frame::Axes;
+use super::pitch::{MOST_PITCHES, PITCHES};
+use super::store::Store;
+use super::strength::FAMILIES;
+use crate::carrier::{StoredError, possible, take};
+
+/// How a surface came from the suspect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// It is the suspect.
+    Suspect,
+    /// Chords were replaced by arcs.
+    Refined,
+    /// A smoothing was undone: a node of [`FAMILIES`].
+    Filtered { family: u8, node: u8 },
+}
+
+impl Origin {
+    fn read(bytes: [u8; 2]) -> Option<Origin> {
+        match bytes {
+            [0, 0] => Some(Origin::Suspect),
+            [1, 0] => Some(Origin::Refined),
+            [family, node] => {
+                let family = family.checked_sub(2)?;
+                let nodes = FAMILIES.get(usize::from(family))?.len();
+                (usize::from(node) < nodes).then_some(Origin::Filtered { family, node })
+            }
+        }
+    }
+}
+
+/// A surface of a suspect, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    pub(super) origin: Origin,
+    /// The first and the second axis; the second and the third.
+    pub(super) axes: [Axes; 2],
+    /// The pitches that it is read at.
+    pub(super) pitches: Vec<f64>,
+    /// Fine enough for all of them.
+    pub(super) store: Store,
+}
+
+impl Surface {
+    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store.
+    pub fn read(bytes: &mut &[u8]) -> Result<Surface, StoredError> {
+        let origin = Origin::read(take(bytes)?).ok_or(StoredError::Damaged)?;
+        let [first, second] = take(bytes)?;
+        let axes = |byte: u8| {
+            let known = [Axes::Distinct, Axes::Exchangeable, Axes::Undetermined];
+            let axes = known.get(usize::from(byte)).copied();
+            axes.ok_or(StoredError::Damaged)
+        };
+        let axes = [axes(first)?, axes(second)?];
+        let [bits] = take(bytes)?;
+        let is_read = |(number, pitch): (u8, f64)| (bits >> number & 1 != 0).then_some(pitch);
+        let pitches: Vec<f64> = (0..).zip(PITCHES).filter_map(is_read).collect();
+        // No more are charged.
+        let is_possible = pitches.len() <= MOST_PITCHES && bits >> PITCHES.len() == 0;
+        possible(is_possible, "a surface at more pitches than are read")?;
+        let finest = *pitches.first().ok_or(StoredError::Damaged)?;
+        Ok(Surface {
+            origin,
+            axes,
+            store: Store::read(bytes, finest)?,
+            pitches,
+        })
+    }
+
+    /// Appends the bytes.
+    pub fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(match self.origin {
+            Origin::Suspect => [0, 0],
+            Origin::Refined => [1, 0],
+            Origin::Filtered { family, node } => [family + 2, node],
+        });
+        bytes.extend(self.axes.map(|axes| axes as u8));
+        let bit = |own: &f64| 1u8 << PITCHES.partition_point(|pitch| pitch < own);
+        bytes.push(self.pitches.iter().map(bit).sum());
+        self.store.write(bytes);
+    }
+}

@@ -75,7 +75,7 @@ async function open(options = {}) {
     globalThis.asked = []; // what workers were asked to do
     const { postMessage } = Worker.prototype;
     Worker.prototype.postMessage = function (message, ...rest) {
-      globalThis.asked.push(message.method);
+      globalThis.asked.push(message.name);
       return postMessage.call(this, message, ...rest);
     };
     addEventListener("securitypolicyviolation", (event) => globalThis.violations.push(`${event.violatedDirective} ${event.blockedURI}`));
@@ -295,7 +295,7 @@ test("the carriers can be chosen, and one always stays", async () => {
 });
 
 test("a strength is tried on the model before it is chosen, the last one wins, and what was tried is not done again", async () => {
-  const embeddings = () => page.evaluate(() => asked.filter((method) => method === "embed").length);
+  const embeddings = () => page.evaluate(() => asked.filter((name) => name === "embed").length);
   const tried = () => page.waitForFunction(() => document.querySelector("#preview")?.ariaBusy === "false");
   await dropped(onDisk("demo.glb", meshmark.demoModel()));
   await preview().getByText("Tried with a key made for this preview.").waitFor();
@@ -315,7 +315,7 @@ test("a strength is tried on the model before it is chosen, the last one wins, a
   });
   const before = await embeddings();
   await page.getByLabel("Strength").selectOption("strong");
-  await page.waitForFunction((count) => asked.filter((method) => method === "embed").length > count, before);
+  await page.waitForFunction((count) => asked.filter((name) => name === "embed").length > count, before);
   await page.getByLabel("Strength").selectOption("subtle"); // while the strong one is tried
   await page.waitForFunction((texts) => texts.length > 0, seen);
   await tried();
@@ -672,7 +672,7 @@ test("what carries no mark of the key cannot be broken, and says so", async () =
   await fillKey();
   await button("Begin").click();
   await result().getByText("There is nothing to break").waitFor();
-  const { model } = meshmark.embed(meshmark.demoModel(), undefined, TAG, meshmark.deriveKey(OWNER, PASSPHRASE));
+  const { model } = meshmark.embed(meshmark.demoModel(), TAG, meshmark.deriveKey(OWNER, PASSPHRASE));
   await dropped(onDisk("mine.glb", model));
   await button("Begin").click();
   await view().getByRole("row", { name: "As it was marked" }).waitFor();

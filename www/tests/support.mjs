@@ -8,6 +8,9 @@ export const repository = new URL("../../", import.meta.url);
 export const packageFolder = new URL("../meshmark/", import.meta.url);
 export const contractFile = fileURLToPath(new URL("src/wasm/types.d.ts", repository));
 
+/** What a wasm module exports beside its functions: what loads it, and what is run as soon as it is loaded. */
+export const LOADING = ["default", "initSync", "start"];
+
 export const OWNER = "Test Owner";
 export const PASSPHRASE = "a passphrase for tests only";
 export const TAG = "TEST-42";

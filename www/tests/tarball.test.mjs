@@ -63,7 +63,7 @@ for (const [module, moduleResolution] of [["NodeNext", "NodeNext"], ["ESNext", "
        import { createClient } from "meshmark/client";
        import "meshmark/worker";
        await init();
-       const marked: Embedding = embed(new Uint8Array(), undefined, "A", new Uint8Array(32));
+       const marked: Embedding = embed(new Uint8Array(), "A", new Uint8Array(32));
        const client = await createClient();
        const reading = await client.extract(await client.measure(marked.model), new Uint8Array(32));
        reading.verdict === "found";`,

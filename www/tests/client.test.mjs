@@ -65,7 +65,7 @@ test("it marks to the same bytes as in Node, heard all the way, its inputs left 
   assert.ok(inBrowser.stages.includes("embed"), inBrowser.stages.join());
 });
 
-test("aborting ends the call it belongs to, and no other", async () => {
+test("aborting ends the call it belongs to, and no other, and so does a listener that throws", async () => {
   const ends = await page.evaluate(async () => {
     const client = await createClient();
     const host = await client.demoModel();
@@ -74,12 +74,13 @@ test("aborting ends the call it belongs to, and no other", async () => {
       client.embed(host, "A", key, { signal: running.signal, onProgress: () => running.abort() }),
       client.embed(host, "B", key, { signal: waiting.signal }),
       client.embed(host, "C", key),
+      client.measure(host, { onProgress: () => { throw new Error("enough"); } }),
       client.version({ signal: AbortSignal.abort() }),
     ].map(end);
     waiting.abort();
     return Promise.all(calls);
   });
-  assert.deepEqual(ends, ["MeshmarkError aborted", "MeshmarkError aborted", "done", "MeshmarkError aborted"]);
+  assert.deepEqual(ends, ["MeshmarkError aborted", "MeshmarkError aborted", "done", "MeshmarkError aborted", "MeshmarkError aborted"]);
 });
 
 test("dispose ends what runs, what waits and what comes", async () => {

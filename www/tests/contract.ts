@@ -26,8 +26,10 @@ export const sameResults: {
 export const sameArguments: {
   [F in keyof Contract]: Parameters<Contract[F]> extends Parameters<Client[F]> ? true : false;
 } = { ...sameFunctions };
-export const withSignal: {
-  [F in keyof Contract]: Extract<Required<Parameters<Client[F]>> extends [...unknown[], infer Last] ? Last : never, { signal?: AbortSignal | undefined }> extends never ? false : true;
+type LastOf<Arguments extends unknown[]> = Required<Arguments> extends [...unknown[], infer Last] ? Last : undefined;
+type OptionNames<Last> = Last extends object ? keyof Last : never;
+export const sameOptionsAndSignal: {
+  [F in keyof Contract]: Same<OptionNames<LastOf<Parameters<Client[F]>>>, OptionNames<LastOf<Parameters<Contract[F]>>> | "signal">;
 } = { ...sameFunctions };
 
 export async function useAll(model: Uint8Array, signal: AbortSignal): Promise<string | null> {

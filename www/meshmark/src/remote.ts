@@ -117,7 +117,11 @@ export class Remote {
       return;
     }
     if (reply.kind === "progress") {
-      job.onProgress?.(...reply.heard);
+      try {
+        job.onProgress?.(...reply.heard);
+      } catch {
+        this.#abort(job); // a listener that throws ends the work, as it does without a worker
+      }
       return;
     }
     if (reply.kind === "error") {
@@ -142,10 +146,11 @@ export class Remote {
   }
 
   #abort(job: Job): void {
+    const place = this.#waiting.indexOf(job);
     if (job === this.#running) {
       this.#fail(aborted());
-    } else {
-      this.#waiting.splice(this.#waiting.indexOf(job), 1);
+    } else if (place >= 0) {
+      this.#waiting.splice(place, 1);
       job.reject(aborted());
     }
   }

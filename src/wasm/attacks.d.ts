@@ -38,14 +38,27 @@ export interface MeshmarkErrorObject {
   path: string | null;
 }
 
+export interface AttackOptions {
+  /** What the model names by URI. Default: none. */
+  files?: Files | undefined;
+  /** What is random is drawn with: a whole number below 2^32. Equal seeds give equal copies. Default: 1. */
+  seed?: number | undefined;
+}
+
+export interface QualityOptions {
+  /** What the reference names by URI, and what the copy does. Default: none. */
+  referenceFiles?: Files | undefined;
+  files?: Files | undefined;
+}
+
 /** Every attack, in the order of tables. */
 export function catalogue(): Attack[];
 
 /**
- * A model after some steps, one upon the other, as a .glb of its triangles alone. Equal seeds, whole numbers below 2^32, give equal
- * copies. Fails with code `attack.nothing-left` where no triangle is left.
+ * A model after some steps, one upon the other, as a .glb of its triangles alone. Fails with code `attack.nothing-left` where no
+ * triangle is left.
  */
-export function attack(model: Uint8Array, files: Files | undefined, steps: string[], seed: number): Uint8Array;
+export function attack(model: Uint8Array, steps: string[], options?: AttackOptions): Uint8Array;
 
 /** How a copy differs from a reference. One that has the reference's triangles is put back first, if it was moved as a whole. */
-export function quality(reference: Uint8Array, referenceFiles: Files | undefined, model: Uint8Array, files: Files | undefined): Quality;
+export function quality(reference: Uint8Array, model: Uint8Array, options?: QualityOptions): Quality;

@@ -1,6 +1,8 @@
 //! Trying to break a mark: the attacks by name, and what each costs. Whoever attacks has no key.
 
-use super::{argument, encoded, failure, files_from, thrown};
+use super::options::Options;
+use super::{argument, encoded, failure, thrown};
+use crate::Files;
 use crate::attack::{CATALOGUE, Family, Step, step};
 use crate::document::Document;
 use crate::geometry::Quality;
@@ -40,14 +42,11 @@ pub fn catalogue() -> Result<JsValue, JsValue> {
 
 /// A copy after some steps.
 #[wasm_bindgen(skip_typescript)]
-pub fn attack(
-    model: &[u8],
-    files: JsValue,
-    steps: JsValue,
-    seed: u32,
-) -> Result<Uint8Array, JsValue> {
-    let mut mesh = gathered(model, &files)?;
-    for (step, seed) in steps_from(steps)?.iter().zip(u64::from(seed)..) {
+pub fn attack(model: &[u8], steps: JsValue, options: JsValue) -> Result<Uint8Array, JsValue> {
+    let options = Options::new(options, &["files", "seed"])?;
+    let (steps, seed) = (steps_from(steps)?, seed_from(&options.get("seed"))?);
+    let mut mesh = gathered(model, &options.files("files")?)?;
+    for (step, seed) in steps.iter().zip(seed..) {
         mesh = step.apply(&mesh, seed);
         if mesh.triangles.is_empty() {
             let message = format!("after {step} there is nothing left of the model");
@@ -59,12 +58,7 @@ pub fn attack(
 
 /// What an attack cost and left.
 #[wasm_bindgen(skip_typescript)]
-pub fn quality(
-    reference: &[u8],
-    reference_files: JsValue,
-    model: &[u8],
-    files: JsValue,
-) -> Result<JsValue, JsValue> {
+pub fn quality(reference: &[u8], model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
     #[derive(Serialize)]
     struct Report {
         #[serde(flatten)]
@@ -72,9 +66,10 @@ pub fn quality(
         vertices: usize,
         triangles: usize,
     }
+    let options = Options::new(options, &["referenceFiles", "files"])?;
     let (reference, mesh) = (
-        gathered(reference, &reference_files)?,
-        gathered(model, &files)?,
+        gathered(reference, &options.files("referenceFiles")?)?,
+        gathered(model, &options.files("files")?)?,
     );
     encoded(&Report {
         quality: Quality::between(&reference, &mesh),
@@ -83,8 +78,8 @@ pub fn quality(
     })
 }
 
-fn gathered(model: &[u8], files: &JsValue) -> Result<Mesh, JsValue> {
-    let scene = Document::read(model, &files_from(files)?)
+fn gathered(model: &[u8], files: &Files) -> Result<Mesh, JsValue> {
+    let scene = Document::read(model, files)
         .map_err(Error::from)
         .and_then(|document| Scene::gather(&document).map_err(Error::from))
         .map_err(thrown)?;
@@ -100,4 +95,13 @@ fn steps_from(names: JsValue) -> Result<Vec<Step>, JsValue> {
         known.ok_or_else(|| argument(&format!("there is no attack {name:?}")))
     };
     names.iter().map(named).collect()
+}
+
+/// A whole number below 2^32; 1 where it was left out.
+fn seed_from(value: &JsValue) -> Result<u64, JsValue> {
+    match value.as_f64() {
+        None if value.is_undefined() => Ok(1),
+        Some(seed) if f64::from(seed as u32) == seed => Ok(seed as u64),
+        _ => Err(argument("seed is a whole number below 2^32")),
+    }
 }

@@ -1,12 +1,11 @@
 //! Marking and checking: what the package is made of.
 
-use super::listener::Listener;
-use super::{argument, encoded, files_from, set, thrown};
+use super::options::Options;
+use super::{argument, encoded, set, thrown};
 use crate::watermark::{self, Error, Strength};
-use crate::{Carrier, EmbedOptions, Evidence, Extraction, Key, Payload};
-use js_sys::{Array, Function, JsString, Object, Reflect, Uint8Array};
+use crate::{Carrier, EmbedOptions, Evidence, Extraction, Key, Model, Payload};
+use js_sys::{Array, JsString, Object, Uint8Array};
 use wasm_bindgen::prelude::*;
-use web_sys::AbortSignal;
 use zeroize::Zeroizing;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -16,7 +15,7 @@ const TYPES: &str = include_str!("types.d.ts");
 #[wasm_bindgen(js_name = deriveKey, skip_typescript)]
 pub fn derive_key(owner: JsString, passphrase: JsString) -> Result<Vec<u8>, JsValue> {
     let nfkc = |text: JsString| Zeroizing::new(String::from(text.normalize("NFKC")));
-    let key = Key::from_passphrase(&nfkc(owner), &nfkc(passphrase))
+    let key = Key::from_normalized(&nfkc(owner), &nfkc(passphrase))
         .map_err(Error::from)
         .map_err(thrown)?;
     Ok(key.to_bytes().to_vec())
@@ -26,25 +25,18 @@ pub fn derive_key(owner: JsString, passphrase: JsString) -> Result<Vec<u8>, JsVa
 #[wasm_bindgen(skip_typescript)]
 pub fn embed(
     model: &[u8],
-    files: JsValue,
     payload: JsValue,
     key: &[u8],
     options: JsValue,
-    on_progress: Option<Function>,
-    signal: Option<AbortSignal>,
 ) -> Result<Object, JsValue> {
-    let mut listener = Listener {
-        on_progress,
-        signal,
-    };
-    let key = key_from(key)?;
-    let (payload, options, files) = (
-        payload_from(&payload)?,
-        options_from(&options)?,
-        files_from(&files)?,
-    );
+    let known = ["files", "strength", "carriers", "onProgress"];
+    let options = Options::new(options, &known)?;
+    let (payload, key) = (payload_from(&payload)?, key_from(key)?);
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let options = embed_options_from(&options)?;
+    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
     let embedding =
-        watermark::embed(model, &files, payload, &key, &options, &mut listener).map_err(thrown)?;
+        watermark::embed(model, payload, &key, &options).map_err(thrown)?;
     let marked_files = Object::new();
     for (name, bytes) in &embedding.files {
         set(&marked_files, name, &Uint8Array::from(bytes.as_slice()))?;
@@ -62,51 +54,38 @@ pub fn embed(
 
 /// Measures a suspect.
 #[wasm_bindgen(skip_typescript)]
-pub fn measure(
-    model: &[u8],
-    files: JsValue,
-    on_progress: Option<Function>,
-    signal: Option<AbortSignal>,
-) -> Result<Vec<u8>, JsValue> {
-    let mut listener = Listener {
-        on_progress,
-        signal,
-    };
-    let evidence =
-        watermark::measure(model, &files_from(&files)?, &mut listener).map_err(thrown)?;
+pub fn measure(model: &[u8], options: JsValue) -> Result<Vec<u8>, JsValue> {
+    let options = Options::new(options, &["files", "onProgress"])?;
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
+    let evidence = watermark::measure(model).map_err(thrown)?;
     Ok(evidence.to_bytes())
 }
 
 /// Reads a suspect in one go.
 #[wasm_bindgen(skip_typescript)]
-pub fn detect(
-    model: &[u8],
-    files: JsValue,
-    key: &[u8],
-    expected: JsValue,
-    options: JsValue,
-    on_progress: Option<Function>,
-    signal: Option<AbortSignal>,
-) -> Result<JsValue, JsValue> {
+pub fn detect(model: &[u8], key: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
+    let known = ["files", "expected", "details", "onProgress"];
+    let options = Options::new(options, &known)?;
+    let key = key_from(key)?;
+    let expected = options.get("expected");
     let expected = match expected.is_undefined() {
         true => None,
         false => Some(payload_from(&expected)?),
     };
-    let mut listener = Listener {
-        on_progress,
-        signal,
-    };
-    let (files, key) = (files_from(&files)?, key_from(key)?);
-    let extraction =
-        watermark::detect(model, &files, &key, expected, &mut listener).map_err(thrown)?;
-    told(extraction, &options)
+    let is_for_owner = options.is_set("details")?;
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
+    let extraction = watermark::detect(model, &key, expected).map_err(thrown)?;
+    told(extraction, is_for_owner)
 }
 
 /// Reads a payload.
 #[wasm_bindgen(skip_typescript)]
 pub fn extract(evidence: &[u8], key: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
+    let is_for_owner = Options::new(options, &["details"])?.is_set("details")?;
     let extraction = watermark::extract(&evidence_from(evidence)?, &key_from(key)?);
-    told(extraction, &options)
+    told(extraction, is_for_owner)
 }
 
 /// Tests an expected payload.
@@ -117,18 +96,21 @@ pub fn verify(
     expected: JsValue,
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
+    let is_for_owner = Options::new(options, &["details"])?.is_set("details")?;
     let extraction = watermark::verify(
         &evidence_from(evidence)?,
         &key_from(key)?,
         payload_from(&expected)?,
     );
-    told(extraction, &options)
+    told(extraction, is_for_owner)
 }
 
 /// Describes a model.
 #[wasm_bindgen(skip_typescript)]
-pub fn inspect(model: &[u8], files: JsValue) -> Result<JsValue, JsValue> {
-    encoded(&watermark::inspect(model, &files_from(&files)?).map_err(thrown)?)
+pub fn inspect(model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
+    let files = Options::new(options, &["files"])?.files("files")?;
+    let model = Model::new(model).with_files(&files);
+    encoded(&watermark::inspect(model).map_err(thrown)?)
 }
 
 /// A generated model.
@@ -143,9 +125,8 @@ pub fn version() -> String {
     env!("CARGO_PKG_VERSION").to_owned()
 }
 
-/// A reading, with its details where `options` ask for them.
-fn told(extraction: Extraction, options: &JsValue) -> Result<JsValue, JsValue> {
-    let is_for_owner = field(options, "details") == JsValue::TRUE;
+/// A reading, with its details where they are for the key's owner.
+fn told(extraction: Extraction, is_for_owner: bool) -> Result<JsValue, JsValue> {
     encoded(&match is_for_owner {
         true => extraction.with_details(),
         false => extraction,
@@ -178,9 +159,9 @@ fn payload_from(value: &JsValue) -> Result<Payload, JsValue> {
     payload.map_err(Error::from).map_err(thrown)
 }
 
-fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
+fn embed_options_from(given: &Options) -> Result<EmbedOptions, JsValue> {
     let mut options = EmbedOptions::default();
-    let strength = field(value, "strength");
+    let strength = given.get("strength");
     if let Some(name) = strength.as_string() {
         // Numbers come as numbers; to read them from text takes 12 KB of tables and code.
         options.strength =
@@ -190,7 +171,7 @@ fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
     } else if !strength.is_undefined() {
         return Err(thrown(Error::Strength(format!("{strength:?}"))));
     }
-    let carriers = field(value, "carriers");
+    let carriers = given.get("carriers");
     if !carriers.is_undefined() {
         let name = |name: JsValue| {
             let known = name.as_string().and_then(|name| Carrier::from_name(&name));
@@ -202,9 +183,4 @@ fn options_from(value: &JsValue) -> Result<EmbedOptions, JsValue> {
         options.carriers = names.iter().map(name).collect::<Result<_, _>>()?;
     }
     Ok(options)
-}
-
-/// A property, `undefined` where the value is no object.
-fn field(value: &JsValue, name: &str) -> JsValue {
-    Reflect::get(value, &name.into()).unwrap_or(JsValue::UNDEFINED)
 }

@@ -1,16 +1,18 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
 //! There are three modules, each with a feature and a contract of its own, so that a page that only marks and checks loads no
-//! study and no attack: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The package's tests hold the contracts to what is
-//! exported. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
+//! study and no attack: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The package's
+//! tests hold the contracts to what is exported. What a call cannot do without are its arguments; all else is in one object, its
+//! last. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
-#[cfg(feature = "attacks")]
+#[cfg(feature = "wasm-attacks")]
 mod attacks;
-#[cfg(any(feature = "marks", feature = "study"))]
+#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 mod listener;
-#[cfg(feature = "marks")]
+#[cfg(feature = "wasm-marks")]
 mod marks;
-#[cfg(feature = "study")]
+mod options;
+#[cfg(feature = "wasm-study")]
 mod study;
 
 use crate::Files;
@@ -18,6 +20,15 @@ use crate::watermark::Error;
 use js_sys::{Array, Object, Uint8Array};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
+
+/// A panic stops the module, and the package can say no more than `internal`: the console says what happened and where, so that
+/// it can be reported.
+#[wasm_bindgen(start, skip_typescript)]
+fn start() {
+    std::panic::set_hook(Box::new(|panic| {
+        web_sys::console::error_1(&format!("meshmark: {panic}").into());
+    }));
+}
 
 /// `undefined`, `null`, or an object of byte arrays.
 fn files_from(value: &JsValue) -> Result<Files, JsValue> {
@@ -39,7 +50,7 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     Ok(named)
 }
 
-#[cfg(any(feature = "marks", feature = "study"))]
+#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
     js_sys::Reflect::set(object, &name.into(), value).map(drop)
 }

@@ -19,6 +19,11 @@ export type Smoothing =
 /** How a model is brought to the paper's size: by a face threshold, as there, or by quadric error metrics. */
 export type Preparation = "optimize" | "simplify";
 
+export interface PrepareOptions {
+  /** What the model names by URI. Default: none. */
+  files?: Files | undefined;
+}
+
 /** Three coordinates a vertex, in scene units, and three vertices a triangle. */
 export interface StudyMesh {
   positions: Float64Array;
@@ -27,8 +32,8 @@ export interface StudyMesh {
 
 /** The numbers that the study is made with. */
 export interface Parameters {
-  /** Faces that a model is brought to. */
-  numFaces: number;
+  /** Triangles that a model is brought to, at most. */
+  numTriangles: number;
   /** Hosts of the paper. */
   numHosts: number;
   /** The strength at which smoothings are compared, and those of Fig. 5: RMS displacements as fractions of the diagonal. */
@@ -52,6 +57,14 @@ export interface Fields {
   mean: Float64Array;
   /** Place in the ranking: 1 for the most stable vertex, down to 0; 0 too for those that were rejected. */
   stability: Float64Array;
+}
+
+export interface TraceOptions {
+  smoothing: Smoothing;
+  /** How often it is done: 0 to 2. */
+  iterations: number;
+  ranking: Ranking;
+  numHosts: number;
 }
 
 /** Hosts before and after smoothing. The mesh is the smoothed one. */
@@ -82,14 +95,17 @@ export interface Spread {
 export type Rule = "index" | "region" | "overlap";
 
 export interface HostsOptions {
-  /** Draws of random hosts. Default 20. */
-  draws?: number;
-  /** What they are drawn with. Default 1. */
-  seed?: number;
-  /** Hosts of the overlap rule. Default 1000. */
-  numHosts?: number;
-  /** How near is near for the region rule, in mean edges. Default 0.2. */
-  tau?: number;
+  smoothing: Smoothing;
+  /** How often it is done: 0 to 2. */
+  iterations: number;
+  /** Draws of random hosts. Default: 20. */
+  draws?: number | undefined;
+  /** What they are drawn with. Default: 1. */
+  seed?: number | undefined;
+  /** Hosts of the overlap rule. Default: 1000. */
+  numHosts?: number | undefined;
+  /** How near is near for the region rule, in mean edges. Default: 0.2. */
+  tau?: number | undefined;
 }
 
 /** A row of Table I. */
@@ -116,14 +132,17 @@ export type Hosts = "random" | Ranking | "all";
 /** How hosts are found again: indices known, ranked again, the original known, or by their direction. */
 export type Finding = "traced" | "ranked" | "original" | "cells";
 
-export interface ErrorsCase {
+export interface ErrorsOptions {
   hosts: Hosts;
   smoothing: Smoothing;
+  /** How often it is done: 0 to 2. */
   iterations: number;
   /** RMS displacement over all vertices, as a fraction of the diagonal. */
   strength: number;
   /** How many keys are tried, each with a message of its own. */
   keys: number;
+  /** Hears how far the keys are: `fraction` from 0 to 1. */
+  onProgress?: ((stage: string, fraction: number) => void) | undefined;
 }
 
 /** The errors of a case and one way of finding, over all keys. */
@@ -153,7 +172,7 @@ export interface MeshmarkErrorObject {
 export function parameters(): Parameters;
 
 /** A model as the paper's. */
-export function prepare(model: Uint8Array, files: Files | undefined, preparation: Preparation): Prepared;
+export function prepare(model: Uint8Array, preparation: Preparation, options?: PrepareOptions): Prepared;
 
 /** Vertices, the most stable first; those that were rejected as errors of topology are not among them. */
 export function rank(mesh: StudyMesh, ranking: Ranking): Uint32Array;
@@ -161,11 +180,11 @@ export function rank(mesh: StudyMesh, ranking: Ranking): Uint32Array;
 /** Curvature and stability. */
 export function fields(mesh: StudyMesh, ranking: Ranking): Fields;
 
-/** Smooths a mesh, 0 to 2 times, and looks for its hosts. */
-export function trace(mesh: StudyMesh, smoothing: Smoothing, iterations: number, ranking: Ranking, numHosts: number): Tracing;
+/** Smooths a mesh and looks for its hosts. */
+export function trace(mesh: StudyMesh, options: TraceOptions): Tracing;
 
 /** A row of Table I. */
-export function hosts(mesh: StudyMesh, smoothing: Smoothing, iterations: number, options?: HostsOptions): HostsRow;
+export function hosts(mesh: StudyMesh, options: HostsOptions): HostsRow;
 
-/** A point of Fig. 5, for each way of finding. `onProgress` hears how far the keys are, from 0 to 1. */
-export function errors(mesh: StudyMesh, asked: ErrorsCase, onProgress?: (stage: string, fraction: number) => void): Errors[];
+/** A point of Fig. 5, for each way of finding. */
+export function errors(mesh: StudyMesh, options: ErrorsOptions): Errors[];

@@ -1,16 +1,16 @@
 //! The study. Its functions take the mesh with every call: a worker that was ended has lost nothing.
 
-use super::listener::Listener;
-use super::{argument, encoded, files_from, set, thrown};
+use super::options::Options;
+use super::{argument, encoded, set, thrown};
 use crate::document::Document;
 use crate::geometry::diagonal;
 use crate::mesh::Mesh;
+use crate::scene::Scene;
 use crate::paper::figure_5::{self, Case, Hosts};
 use crate::paper::{self, Barycentre, HostsOptions, Preparation, Ranking, Smoothing};
-use crate::scene::Scene;
 use crate::watermark::Error;
 use glam::DVec3;
-use js_sys::{Float64Array, Function, Object, Reflect, Uint32Array};
+use js_sys::{Float64Array, Object, Reflect, Uint32Array};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
@@ -26,13 +26,13 @@ pub fn parameters() -> Result<JsValue, JsValue> {
     #[derive(Serialize)]
     #[serde(rename_all = "camelCase")]
     struct Parameters {
-        num_faces: usize,
+        num_triangles: usize,
         num_hosts: u32,
         strength: f64,
         strengths: [f64; 5],
     }
     encoded(&Parameters {
-        num_faces: paper::NUM_FACES,
+        num_triangles: paper::NUM_FACES,
         num_hosts: HostsOptions::default().num_hosts,
         strength: figure_5::STRENGTH,
         strengths: figure_5::STRENGTHS,
@@ -41,10 +41,11 @@ pub fn parameters() -> Result<JsValue, JsValue> {
 
 /// A model as the paper's.
 #[wasm_bindgen(skip_typescript)]
-pub fn prepare(model: &[u8], files: JsValue, preparation: &str) -> Result<Object, JsValue> {
+pub fn prepare(model: &[u8], preparation: &str, options: JsValue) -> Result<Object, JsValue> {
+    let files = Options::new(options, &["files"])?.files("files")?;
     let preparation = Preparation::from_name(preparation)
         .ok_or_else(|| argument(&format!("there is no preparation {preparation:?}")))?;
-    let scene = Document::read(model, &files_from(&files)?)
+    let scene = Document::read(model, &files)
         .map_err(Error::from)
         .and_then(|document| Scene::gather(&document).map_err(Error::from))
         .map_err(thrown)?;
@@ -84,19 +85,23 @@ pub fn fields(mesh: JsValue, ranking: &str) -> Result<Object, JsValue> {
 
 /// Smooths a mesh and looks for its hosts.
 #[wasm_bindgen(skip_typescript)]
-pub fn trace(
-    mesh: JsValue,
-    smoothing: &str,
-    iterations: u32,
-    ranking: &str,
-    num_hosts: u32,
-) -> Result<Object, JsValue> {
+pub fn trace(mesh: JsValue, options: JsValue) -> Result<Object, JsValue> {
+    #[derive(Deserialize)]
+    #[serde(rename_all = "camelCase")]
+    struct Asked {
+        smoothing: Smoothing,
+        iterations: u32,
+        ranking: Ranking,
+        num_hosts: u32,
+    }
+    let known = ["smoothing", "iterations", "ranking", "numHosts"];
+    let asked: Asked = Options::new(options, &known)?.decoded()?;
     let tracing = paper::trace(
         &mesh_from(&mesh)?,
-        smoothing_from(smoothing)?,
-        iterations_from(iterations)?,
-        ranking_from(ranking)?,
-        num_hosts as usize,
+        asked.smoothing,
+        iterations_from(asked.iterations)?,
+        asked.ranking,
+        asked.num_hosts as usize,
     );
     let result = Object::new();
     set(&result, "positions", &reals(&tracing.positions))?;
@@ -110,32 +115,34 @@ pub fn trace(
 
 /// A row of Table I.
 #[wasm_bindgen(skip_typescript)]
-pub fn hosts(
-    mesh: JsValue,
-    smoothing: &str,
-    iterations: u32,
-    options: JsValue,
-) -> Result<JsValue, JsValue> {
-    let options: HostsOptions = if options.is_undefined() {
-        HostsOptions::default()
-    } else {
-        decoded(options)?
-    };
+pub fn hosts(mesh: JsValue, options: JsValue) -> Result<JsValue, JsValue> {
+    #[derive(Deserialize)]
+    struct Asked {
+        smoothing: Smoothing,
+        iterations: u32,
+    }
+    let known = [
+        "smoothing",
+        "iterations",
+        "draws",
+        "seed",
+        "numHosts",
+        "tau",
+    ];
+    let options = Options::new(options, &known)?;
+    let asked: Asked = options.decoded()?;
+    let counting: HostsOptions = options.decoded()?;
     encoded(&paper::hosts(
         &mesh_from(&mesh)?,
-        smoothing_from(smoothing)?,
-        iterations_from(iterations)?,
-        &options,
+        asked.smoothing,
+        iterations_from(asked.iterations)?,
+        &counting,
     ))
 }
 
 /// A point of Fig. 5, for each way of finding.
 #[wasm_bindgen(skip_typescript)]
-pub fn errors(
-    mesh: JsValue,
-    case: JsValue,
-    on_progress: Option<Function>,
-) -> Result<JsValue, JsValue> {
+pub fn errors(mesh: JsValue, options: JsValue) -> Result<JsValue, JsValue> {
     #[derive(Deserialize)]
     #[serde(rename_all = "camelCase")]
     struct Asked {
@@ -145,8 +152,16 @@ pub fn errors(
         strength: f64,
         keys: u32,
     }
-    let mesh = mesh_from(&mesh)?;
-    let asked: Asked = decoded(case)?;
+    let known = [
+        "hosts",
+        "smoothing",
+        "iterations",
+        "strength",
+        "keys",
+        "onProgress",
+    ];
+    let options = Options::new(options, &known)?;
+    let (mesh, asked) = (mesh_from(&mesh)?, options.decoded::<Asked>()?);
     let case = Case {
         hosts: Hosts::every()
             .find(|hosts| hosts.name() == asked.hosts)
@@ -156,11 +171,8 @@ pub fn errors(
         smoothing: asked.smoothing,
         iterations: iterations_from(asked.iterations)?,
     };
-    let mut listener = Listener {
-        on_progress,
-        signal: None,
-    };
-    let errors = figure_5::errors(&mesh, &case, 0..u64::from(asked.keys), &mut listener);
+    let keys = 0..u64::from(asked.keys);
+    let errors = figure_5::errors(&mesh, &case, keys, &mut options.listener()?);
     encoded(&errors.map_err(Error::from).map_err(thrown)?)
 }
 
@@ -188,20 +200,12 @@ fn ranking_from(name: &str) -> Result<Ranking, JsValue> {
     Ranking::from_name(name).ok_or_else(|| argument(&format!("there is no ranking {name:?}")))
 }
 
-fn smoothing_from(name: &str) -> Result<Smoothing, JsValue> {
-    Smoothing::from_name(name).ok_or_else(|| argument(&format!("there is no smoothing {name:?}")))
-}
-
 fn iterations_from(iterations: u32) -> Result<u32, JsValue> {
     if iterations > MAX_ITERATIONS {
         let most = format!("a mesh is smoothed at most {MAX_ITERATIONS} times");
         return Err(argument(&most));
     }
     Ok(iterations)
-}
-
-fn decoded<T: for<'a> Deserialize<'a>>(value: JsValue) -> Result<T, JsValue> {
-    serde_wasm_bindgen::from_value(value).map_err(|error| argument(&error.to_string()))
 }
 
 fn reals(numbers: &[f64]) -> Float64Array {

@@ -13,18 +13,29 @@ export type Payload = string | number;
  */
 export type Strength = "subtle" | "balanced" | "strong" | number;
 
-export interface EmbedOptions {
-  /** Default: `balanced`. */
-  strength?: Strength;
-  /** Default: every carrier. One that the model is too small or too regular for is left out, if another can be used. */
-  carriers?: Carrier[];
-}
-
 /** What the work is at. */
 export type Stage = "read" | "embed" | "write" | "measure" | "test" | "forecast";
 
-/** Called as work goes on; `fraction` (0 to 1) is of the stage, not of the whole. */
+/** Called as work goes on; `fraction` (0 to 1) is of the stage, not of the whole. If it throws, the work ends with code `aborted`. */
 export type OnProgress = (stage: Stage, fraction: number) => void;
+
+/** Of every call that reads a model. An option that is `undefined` is left out; one that a call does not know is refused. */
+export interface InspectOptions {
+  /** What a `.gltf` names by URI and needs for its geometry. Default: none, which does for a `.glb`. */
+  files?: Files | undefined;
+}
+
+export interface MeasureOptions extends InspectOptions {
+  /** Default: nobody is told. */
+  onProgress?: OnProgress | undefined;
+}
+
+export interface EmbedOptions extends MeasureOptions {
+  /** Default: `balanced`. */
+  strength?: Strength | undefined;
+  /** Default: every carrier. One that the model is too small or too regular for is left out, if another can be used. */
+  carriers?: Carrier[] | undefined;
+}
 
 /**
  * `found`: the payload was read and the chance of that without the key is at most 1e-9.
@@ -54,10 +65,18 @@ export type Input = "model" | "evidence";
 
 export interface ReadOptions {
   /**
-   * Whether `Details` are told where nothing is found too. Default: no. They follow the key: whoever sees some thousands of them, of
+   * Whether `Details` are told where nothing is found too. Default: false. They follow the key: whoever sees some thousands of them, of
    * suspects of their own making, can make one that is found. For the key's owner.
    */
-  details?: boolean;
+  details?: boolean | undefined;
+}
+
+export interface DetectOptions extends MeasureOptions, ReadOptions {
+  /**
+   * A payload to test for, which makes the test stronger. It must not come from the suspect; payloads that are tried in turn add up,
+   * as keys do. Default: none; the payload is read.
+   */
+  expected?: Payload | undefined;
 }
 
 /** What follows the key in a reading. */
@@ -161,18 +180,10 @@ export interface MeshmarkErrorObject {
 export function deriveKey(owner: string, passphrase: string): Uint8Array;
 
 /** Marks a model. `key` is 32 bytes: from `deriveKey`, or a key file's. */
-export function embed(
-  model: Uint8Array,
-  files: Files | undefined,
-  payload: Payload,
-  key: Uint8Array,
-  options?: EmbedOptions,
-  onProgress?: OnProgress,
-  signal?: AbortSignal,
-): Embedding;
+export function embed(model: Uint8Array, payload: Payload, key: Uint8Array, options?: EmbedOptions): Embedding;
 
 /** Measures a suspect without any key. The result, versioned bytes, can be kept and tested against many keys. */
-export function measure(model: Uint8Array, files: Files | undefined, onProgress?: OnProgress, signal?: AbortSignal): Uint8Array;
+export function measure(model: Uint8Array, options?: MeasureOptions): Uint8Array;
 
 /** Reads a payload from evidence, knowing only the key. */
 export function extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions): Extraction;
@@ -187,18 +198,10 @@ export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload,
  * Reads a suspect in one go, ending as soon as it is sure: faster than measure and extract. Stage "test"
  * reports the fraction of hypotheses tried.
  */
-export function detect(
-  model: Uint8Array,
-  files: Files | undefined,
-  key: Uint8Array,
-  expected?: Payload,
-  options?: ReadOptions,
-  onProgress?: OnProgress,
-  signal?: AbortSignal,
-): Extraction;
+export function detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions): Extraction;
 
 /** Describes a model and what it could hold, without a key. */
-export function inspect(model: Uint8Array, files?: Files): Inspection;
+export function inspect(model: Uint8Array, options?: InspectOptions): Inspection;
 
 /** A generated model to try things on: a .glb with normals and one material. */
 export function demoModel(): Uint8Array;

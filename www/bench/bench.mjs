@@ -36,7 +36,7 @@ const { values: options } = parseArgs({
 await meshmark.init();
 const host = hostModel();
 const key = meshmark.deriveKey(OWNER, PASSPHRASE);
-const { model: marked, report } = meshmark.embed(host.bytes, undefined, TAG, key);
+const { model: marked, report } = meshmark.embed(host.bytes, TAG, key);
 const work = {
   key: { owner: OWNER, passphrase: PASSPHRASE },
   embed: { model: host.bytes, tag: TAG, key },

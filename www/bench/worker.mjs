@@ -11,11 +11,11 @@ const commands = {
     return {};
   },
   embed({ model, tag, key }, clock) {
-    const { report } = meshmark.embed(model, undefined, tag, key, undefined, clock.start);
+    const { report } = meshmark.embed(model, tag, key, { onProgress: clock.start });
     return { sha256: report.markedSha256 };
   },
   extract({ model, key }, clock) {
-    return { tag: meshmark.detect(model, undefined, key, undefined, undefined, clock.start).tag };
+    return { tag: meshmark.detect(model, key, { onProgress: clock.start }).tag };
   },
   async rank({ mesh, rankings }, clock) {
     await loadStudy();

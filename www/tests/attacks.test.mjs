@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import * as meshmark from "meshmark";
 import * as attacks from "../app/attacks-wasm/attacks.js";
 import { readContract } from "./shape.mjs";
-import { caught, glbOf, repository, validationErrors } from "./support.mjs";
+import { caught, glbOf, LOADING, repository, validationErrors } from "./support.mjs";
 
 const contract = readContract(fileURLToPath(new URL("src/wasm/attacks.d.ts", repository)));
 let demo;
@@ -17,10 +17,10 @@ before(async () => {
   demo = meshmark.demoModel();
 });
 
-const qualityOf = (model) => attacks.quality(demo, undefined, model, undefined);
+const qualityOf = (model) => attacks.quality(demo, model);
 
 test("the module exports exactly the functions that the contract declares, with their numbers of arguments", () => {
-  const exported = Object.keys(attacks).filter((name) => !["default", "initSync"].includes(name));
+  const exported = Object.keys(attacks).filter((name) => !LOADING.includes(name));
   assert.deepEqual(exported.sort(), [...contract.functions.keys()].sort());
   for (const [name, parameters] of contract.functions) {
     assert.equal(attacks[name].length, parameters, name);
@@ -34,7 +34,7 @@ test("real results have exactly the declared shapes", () => {
     assert.deepEqual(contract.differences("Attack", attack), []);
     assert.equal(attack.steps.length, Math.max(attack.levels.length, 1), attack.name);
   }
-  const copy = attacks.attack(demo, undefined, ["noise 0.1 %"], 1);
+  const copy = attacks.attack(demo, ["noise 0.1 %"]);
   assert.ok(copy instanceof Uint8Array);
   assert.deepEqual(contract.differences("Quality", qualityOf(copy)), []);
 });
@@ -53,37 +53,42 @@ test("every step of the catalogue can be done to a small model, and leaves a val
   }
   const torus = glbOf({ positions, indices });
   for (const step of attacks.catalogue().flatMap(({ steps }) => steps)) {
-    assert.deepEqual(await validationErrors(attacks.attack(torus, undefined, [step], 3)), [], step);
+    assert.deepEqual(await validationErrors(attacks.attack(torus, [step], { seed: 3 })), [], step);
   }
 });
 
 test("equal seeds give equal copies, and steps are done one upon the other", () => {
-  const noisy = (seed) => attacks.attack(demo, undefined, ["noise 0.3 %"], seed);
+  const noisy = (seed) => attacks.attack(demo, ["noise 0.3 %"], { seed });
+  assert.deepEqual(noisy(undefined), noisy(1));
   assert.deepEqual(noisy(7), noisy(7));
   assert.notDeepEqual(noisy(7), noisy(8));
-  const [all, half] = [qualityOf(demo), qualityOf(attacks.attack(demo, undefined, ["simplify 50 %"], 1))];
+  const [all, half] = [qualityOf(demo), qualityOf(attacks.attack(demo, ["simplify 50 %"]))];
   assert.ok(all.rmsRel < 1e-9 && all.hausdorffRel < 1e-9 && all.msdm < 1e-9, JSON.stringify(all));
   assert.ok(Math.abs(half.triangles / all.triangles - 0.5) < 0.01);
-  const chained = qualityOf(attacks.attack(demo, undefined, ["crop 30 %", "simplify 50 %", "quantize 8 bits"], 1));
+  const chained = qualityOf(attacks.attack(demo, ["crop 30 %", "simplify 50 %", "quantize 8 bits"]));
   assert.ok(chained.triangles < 0.8 * half.triangles && chained.rmsRel > half.rmsRel);
 });
 
 test("what moves the model as a whole, or names its vertices anew, costs nothing", () => {
   for (const step of ["similarity", "swapped axes", "reorder"]) {
-    const { rmsRel, msdm } = qualityOf(attacks.attack(demo, undefined, [step], 5));
+    const { rmsRel, msdm } = qualityOf(attacks.attack(demo, [step], { seed: 5 }));
     assert.ok(rmsRel < 1e-6 && msdm < 0.01, `${step}: ${rmsRel} ${msdm}`);
   }
 });
 
 test("what is no model and no attack is refused with a code", () => {
   for (const [code, wrong] of [
-    ["document.", () => attacks.attack(new Uint8Array(3), undefined, [], 1)],
+    ["document.", () => attacks.attack(new Uint8Array(3), [])],
     ["document.", () => qualityOf(new Uint8Array(3))],
-    ["options.argument", () => attacks.attack(demo, undefined, ["melt"], 1)],
-    ["options.argument", () => attacks.attack(demo, undefined, ["noise 0.2 %"], 1)],
-    ["options.argument", () => attacks.attack(demo, undefined, [7], 1)],
-    ["options.argument", () => attacks.attack(demo, undefined, "noise 0.1 %", 1)],
-    ["options.argument", () => attacks.attack(demo, 3, ["noise 0.1 %"], 1)],
+    ["options.argument", () => attacks.attack(demo, ["melt"])],
+    ["options.argument", () => attacks.attack(demo, ["noise 0.2 %"])],
+    ["options.argument", () => attacks.attack(demo, [7])],
+    ["options.argument", () => attacks.attack(demo, "noise 0.1 %")],
+    ["options.argument", () => attacks.attack(demo, ["noise 0.1 %"], { files: 3 })],
+    ["options.argument", () => attacks.attack(demo, ["noise 0.1 %"], { seeds: 3 })],
+    ["options.argument", () => attacks.attack(demo, ["noise 0.1 %"], { seed: 0.5 })],
+    ["options.argument", () => attacks.attack(demo, ["noise 0.1 %"], { seed: "3" })],
+    ["options.argument", () => attacks.quality(demo, demo, { seed: 3 })],
   ]) {
     const error = caught(wrong);
     assert.deepEqual(contract.differences("MeshmarkErrorObject", error), []);
@@ -93,7 +98,7 @@ test("what is no model and no attack is refused with a code", () => {
 
 test("an attack that leaves nothing says so", () => {
   const triangle = glbOf({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], indices: [0, 1, 2] });
-  const error = caught(() => attacks.attack(triangle, undefined, ["noise 0.1 %", "crop 50 %"], 1));
+  const error = caught(() => attacks.attack(triangle, ["noise 0.1 %", "crop 50 %"]));
   assert.equal(error.code, "attack.nothing-left");
   assert.match(error.message, /after crop 50 % there is nothing left/);
 });

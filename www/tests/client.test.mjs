@@ -46,40 +46,41 @@ test("it marks to the same bytes as in Node, heard all the way, its inputs left 
     const client = await createClient();
     const host = await client.demoModel();
     const stages = new Set();
-    const { model, report } = await client.embed(host, undefined, "CLIENT", key, {}, { onProgress: (stage) => stages.add(stage) });
+    const { model, report } = await client.embed(host, "CLIENT", key, { onProgress: (stage) => stages.add(stage) });
     const reading = await client.extract(await client.measure(model), key);
     const tried = [];
-    const detected = await client.detect(model, undefined, key, "CLIENT", undefined, { onProgress: (stage, fraction) => stage === "test" && tried.push(fraction) });
+    const detected = await client.detect(model, key, { expected: "CLIENT", onProgress: (stage, fraction) => stage === "test" && tried.push(fraction) });
     return { host: host.length, key: key.length, sha256: await sha256(model), report, reading, detected, tried, stages: [...stages] };
   });
   const host = meshmark.demoModel();
   const key = new Uint8Array(32).fill(9);
-  const { model, report } = meshmark.embed(host, undefined, "CLIENT", key);
+  const { model, report } = meshmark.embed(host, "CLIENT", key);
   assert.equal(inBrowser.sha256, createHash("sha256").update(model).digest("hex"));
   assert.deepEqual(inBrowser.report, report);
-  assert.deepEqual(inBrowser.reading, meshmark.extract(meshmark.measure(model, undefined), key));
-  assert.deepEqual(inBrowser.detected, meshmark.detect(model, undefined, key, "CLIENT"));
+  assert.deepEqual(inBrowser.reading, meshmark.extract(meshmark.measure(model), key));
+  assert.deepEqual(inBrowser.detected, meshmark.detect(model, key, { expected: "CLIENT" }));
   assert.ok(inBrowser.tried.length > 0, "no hypothesis is heard of");
   assert.equal(inBrowser.host, host.length);
   assert.equal(inBrowser.key, 32);
   assert.ok(inBrowser.stages.includes("embed"), inBrowser.stages.join());
 });
 
-test("aborting ends the call it belongs to, and no other", async () => {
+test("aborting ends the call it belongs to, and no other, and so does a listener that throws", async () => {
   const ends = await page.evaluate(async () => {
     const client = await createClient();
     const host = await client.demoModel();
     const [running, waiting] = [new AbortController(), new AbortController()];
     const calls = [
-      client.embed(host, undefined, "A", key, {}, { signal: running.signal, onProgress: () => running.abort() }),
-      client.embed(host, undefined, "B", key, {}, { signal: waiting.signal }),
-      client.embed(host, undefined, "C", key),
+      client.embed(host, "A", key, { signal: running.signal, onProgress: () => running.abort() }),
+      client.embed(host, "B", key, { signal: waiting.signal }),
+      client.embed(host, "C", key),
+      client.measure(host, { onProgress: () => { throw new Error("enough"); } }),
       client.version({ signal: AbortSignal.abort() }),
     ].map(end);
     waiting.abort();
     return Promise.all(calls);
   });
-  assert.deepEqual(ends, ["MeshmarkError aborted", "MeshmarkError aborted", "done", "MeshmarkError aborted"]);
+  assert.deepEqual(ends, ["MeshmarkError aborted", "MeshmarkError aborted", "done", "MeshmarkError aborted", "MeshmarkError aborted"]);
 });
 
 test("dispose ends what runs, what waits and what comes", async () => {
@@ -95,10 +96,11 @@ test("dispose ends what runs, what waits and what comes", async () => {
 test("errors arrive as MeshmarkErrors, and the client goes on", async () => {
   const ends = await page.evaluate(async () => {
     const client = await createClient();
-    return [await end(client.inspect(new Uint8Array(3))), await end(client.version())];
+    const wrong = [client.inspect(new Uint8Array(3)), client.extract(key, key, { onProgress: () => {} }), client.version({ other: 1 })];
+    return [...(await Promise.all(wrong.map(end))), await end(client.version())];
   });
   assert.match(ends[0], /^MeshmarkError document\./);
-  assert.equal(ends[1], "done");
+  assert.deepEqual(ends.slice(1), ["MeshmarkError options.argument", "MeshmarkError options.argument", "done"]);
 });
 
 test("a worker or a module that is not there is said to be missing", async () => {

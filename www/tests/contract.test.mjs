@@ -4,14 +4,14 @@ import { before, test } from "node:test";
 import * as facade from "meshmark";
 import * as glue from "../meshmark/wasm/meshmark.js";
 import { readContract } from "./shape.mjs";
-import { caught, contractFile, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { caught, contractFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 const contract = readContract(contractFile);
 
 before(() => facade.init());
 
 test("the module exports exactly the functions that the contract declares", () => {
-  const exported = Object.keys(glue).filter((name) => !["default", "initSync"].includes(name));
+  const exported = Object.keys(glue).filter((name) => !LOADING.includes(name));
   assert.deepEqual(exported.sort(), [...contract.functions.keys()].sort());
 });
 
@@ -28,15 +28,15 @@ test("the package exports the same functions, init and its error", () => {
 test("real results have exactly the declared shapes", () => {
   const model = facade.demoModel();
   const key = facade.deriveKey(OWNER, PASSPHRASE);
-  const embedding = facade.embed(model, undefined, TAG, key);
-  const evidence = facade.measure(embedding.model, undefined);
+  const embedding = facade.embed(model, TAG, key);
+  const evidence = facade.measure(embedding.model);
   const wrongKey = new Uint8Array(32).fill(7);
   assert.deepEqual(contract.differences("Embedding", embedding), []);
   assert.deepEqual(contract.differences("Extraction", facade.extract(evidence, key)), []);
   assert.deepEqual(contract.differences("Extraction", facade.extract(evidence, wrongKey)), []);
-  assert.deepEqual(contract.differences("Extraction", facade.detect(embedding.model, undefined, key)), []);
-  assert.deepEqual(contract.differences("Extraction", facade.detect(model, undefined, key, TAG)), []);
-  assert.deepEqual(contract.differences("DetailedExtraction", facade.detect(model, undefined, key, TAG, { details: true })), []);
+  assert.deepEqual(contract.differences("Extraction", facade.detect(embedding.model, key)), []);
+  assert.deepEqual(contract.differences("Extraction", facade.detect(model, key, { expected: TAG })), []);
+  assert.deepEqual(contract.differences("DetailedExtraction", facade.detect(model, key, { expected: TAG, details: true })), []);
   assert.deepEqual(contract.differences("DetailedExtraction", facade.extract(evidence, wrongKey, { details: true })), []);
   assert.deepEqual(contract.differences("DetailedExtraction", facade.verify(evidence, wrongKey, TAG, { details: true })), []);
   assert.deepEqual(contract.differences("Verification", facade.verify(evidence, key, TAG)), []);
@@ -47,17 +47,40 @@ test("real results have exactly the declared shapes", () => {
   assert.equal(typeof facade.version(), "string");
 });
 
+test("each call takes every option that is declared for it, and no other", () => {
+  const [model, key] = [facade.demoModel(), new Uint8Array(32).fill(1)];
+  const evidence = facade.measure(model);
+  const calls = {
+    EmbedOptions: (options) => facade.embed(model, TAG, key, options),
+    MeasureOptions: (options) => facade.measure(model, options),
+    ReadOptions: (options) => facade.extract(evidence, key, options),
+    DetectOptions: (options) => facade.detect(model, key, options),
+    InspectOptions: (options) => facade.inspect(model, options),
+  };
+  for (const [type, call] of Object.entries(calls)) {
+    const { message } = caught(() => call({ other: 1 }));
+    assert.deepEqual(/^there is no option "other"; there are (.*)$/.exec(message)?.[1].split(", ").sort(), contract.properties(type).sort(), type);
+  }
+  assert.throws(() => facade.verify(evidence, key, TAG, { detail: true }), { code: "options.argument" });
+  for (const wrong of [{ details: 1 }, { onProgress: 1 }, { files: 1 }, "files", null]) {
+    assert.throws(() => facade.detect(model, key, wrong), { code: "options.argument" }, JSON.stringify(wrong));
+  }
+  assert.throws(() => facade.deriveKey(OWNER, PASSPHRASE, {}), { code: "options.argument" }, "one that takes no options");
+  facade.inspect(model, { files: undefined });
+});
+
 test("every error has the declared shape", () => {
-  const thrown = caught(() => glue.inspect(new Uint8Array([1, 2, 3]), undefined));
+  const thrown = caught(() => glue.inspect(new Uint8Array([1, 2, 3])));
   assert.deepEqual(contract.differences("MeshmarkErrorObject", thrown), []);
 });
 
 test("progress names declared stages, with fractions from 0 to 1", () => {
   const heard = [];
   const key = new Uint8Array(32).fill(1);
-  const { model } = facade.embed(facade.demoModel(), undefined, TAG, key, undefined, (...report) => heard.push(report));
-  facade.measure(model, undefined, (...report) => heard.push(report));
-  facade.detect(model, undefined, key, undefined, undefined, (...report) => heard.push(report));
+  const onProgress = (...report) => heard.push(report);
+  const { model } = facade.embed(facade.demoModel(), TAG, key, { onProgress });
+  facade.measure(model, { onProgress });
+  facade.detect(model, key, { onProgress });
   assert.ok(heard.length > 0);
   for (const [stage, fraction] of heard) {
     assert.deepEqual(contract.differences("Stage", stage), []);

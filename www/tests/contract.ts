@@ -19,19 +19,27 @@ export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F
   version: true,
 };
 
-/** Every function has its promise in the client, with the same result. */
+/** Every function has its promise in the client: with the same result, for the same arguments, and with a signal among the options. */
 export const sameResults: {
   [F in keyof Contract]: Same<Promise<ReturnType<Contract[F]>>, ReturnType<Client[F]>>;
+} = { ...sameFunctions };
+export const sameArguments: {
+  [F in keyof Contract]: Parameters<Contract[F]> extends Parameters<Client[F]> ? true : false;
+} = { ...sameFunctions };
+type LastOf<Arguments extends unknown[]> = Required<Arguments> extends [...unknown[], infer Last] ? Last : undefined;
+type OptionNames<Last> = Last extends object ? keyof Last : never;
+export const sameOptionsAndSignal: {
+  [F in keyof Contract]: Same<OptionNames<LastOf<Parameters<Client[F]>>>, OptionNames<LastOf<Parameters<Contract[F]>>> | "signal">;
 } = { ...sameFunctions };
 
 export async function useAll(model: Uint8Array, signal: AbortSignal): Promise<string | null> {
   await meshmark.init();
   const key = meshmark.deriveKey("Jane", "correct horse");
-  const { model: marked, report } = meshmark.embed(model, undefined, "JANE-1", key, { strength: "strong" });
-  const reading = meshmark.extract(meshmark.measure(marked, undefined), key);
+  const { model: marked, report } = meshmark.embed(model, "JANE-1", key, { strength: "strong" });
+  const reading = meshmark.extract(meshmark.measure(marked), key);
   const client = await createClient({ workerUrl: "/worker.js", wasmUrl: new URL("https://a.example/meshmark.wasm") });
   try {
-    await client.embed(model, {}, 7, key, { carriers: ["solid", "ring"] }, { signal, onProgress: (stage, fraction) => void [stage, fraction] });
+    await client.embed(model, 7, key, { files: {}, carriers: ["solid", "ring"], signal, onProgress: (stage, fraction) => void [stage, fraction] });
   } catch (error) {
     return error instanceof MeshmarkError ? error.code : null;
   } finally {
@@ -39,6 +47,8 @@ export async function useAll(model: Uint8Array, signal: AbortSignal): Promise<st
   }
   // @ts-expect-error a report holds no key
   report.key;
+  // @ts-expect-error what runs to its end cannot be given a signal
+  meshmark.measure(model, { signal });
   // @ts-expect-error a key is bytes
   meshmark.extract(marked, "key");
   return reading.tag;

@@ -100,37 +100,37 @@ test("every carrier speaks, in its order, and a carrier alone leaves the other s
   const names = (list) => list.map(({ name }) => name);
   const host = meshmark.demoModel();
   assert.deepEqual(names(meshmark.inspect(host).capacity), ["solid", "ring"]);
-  const { readBack } = meshmark.embed(host, undefined, "ALONE", key, { carriers: ["ring"] }).report;
+  const { readBack } = meshmark.embed(host, "ALONE", key, { carriers: ["ring"] }).report;
   assert.deepEqual(names(readBack.carriers), ["solid", "ring"]);
   assert.deepEqual(readBack.carriers.map(({ tag }) => tag), [null, "ALONE"]);
-  const none = () => meshmark.embed(host, undefined, "ALONE", key, { carriers: [] });
+  const none = () => meshmark.embed(host, "ALONE", key, { carriers: [] });
   assert.throws(none, (error) => error instanceof MeshmarkError && error.code === "options.no-carrier");
 });
 
 test("detect reads at one go what measure, extract and verify read", async () => {
   await meshmark.init();
   const [key, stranger] = [5, 6].map((byte) => new Uint8Array(32).fill(byte));
-  const { model } = meshmark.embed(meshmark.demoModel(), undefined, "GO", key);
-  const evidence = meshmark.measure(model, undefined);
+  const { model } = meshmark.embed(meshmark.demoModel(), "GO", key);
+  const evidence = meshmark.measure(model);
   const answer = ({ verdict, tag }) => [verdict, tag];
-  assert.deepEqual(answer(meshmark.detect(model, undefined, key)), ["found", "GO"]);
-  assert.deepEqual(answer(meshmark.detect(model, undefined, key, "GO")), answer(meshmark.verify(evidence, key, "GO")));
-  assert.deepEqual(answer(meshmark.detect(model, undefined, key, "OTHER")), answer(meshmark.verify(evidence, key, "OTHER")));
-  assert.deepEqual(answer(meshmark.detect(model, undefined, stranger)), answer(meshmark.extract(evidence, stranger)));
-  for (const read of [(options) => meshmark.extract(evidence, stranger, options), (options) => meshmark.detect(model, undefined, stranger, undefined, options)]) {
+  assert.deepEqual(answer(meshmark.detect(model, key)), ["found", "GO"]);
+  assert.deepEqual(answer(meshmark.detect(model, key, { expected: "GO" })), answer(meshmark.verify(evidence, key, "GO")));
+  assert.deepEqual(answer(meshmark.detect(model, key, { expected: "OTHER" })), answer(meshmark.verify(evidence, key, "OTHER")));
+  assert.deepEqual(answer(meshmark.detect(model, stranger)), answer(meshmark.extract(evidence, stranger)));
+  for (const read of [(options) => meshmark.extract(evidence, stranger, options), (options) => meshmark.detect(model, stranger, options)]) {
     assert.equal("lnP" in read(), false, "what follows the key is told");
     assert.equal(typeof read({ details: true }).lnP, "number");
   }
-  assert.deepEqual([meshmark.extract(evidence, key).input, meshmark.detect(model, undefined, key).input], ["evidence", "model"]);
+  assert.deepEqual([meshmark.extract(evidence, key).input, meshmark.detect(model, key).input], ["evidence", "model"]);
   const fractions = [];
-  meshmark.detect(model, undefined, stranger, undefined, undefined, (stage, fraction) => stage === "test" && fractions.push(fraction));
+  meshmark.detect(model, stranger, { onProgress: (stage, fraction) => stage === "test" && fractions.push(fraction) });
   assert.ok(fractions.length > 1, "no hypothesis is heard of");
   assert.deepEqual(fractions, fractions.toSorted((a, b) => a - b));
 });
 
 test("an embedding foretells what its mark survives, each kind of change once", async () => {
   await meshmark.init();
-  const embed = (options) => meshmark.embed(meshmark.demoModel(), undefined, "FORE", new Uint8Array(32).fill(5), options).report.forecast;
+  const embed = (options) => meshmark.embed(meshmark.demoModel(), "FORE", new Uint8Array(32).fill(5), options).report.forecast;
   const both = embed({});
   assert.deepEqual(both.map(({ attack }) => attack).sort(), ["crop", "noise", "none", "quantize", "simplify-30", "simplify-70", "smooth"]);
   assert.equal(both.find(({ attack }) => attack === "none").level, "green");
@@ -141,16 +141,34 @@ test("an embedding foretells what its mark survives, each kind of change once", 
 test("a key of another length is refused", async () => {
   await meshmark.init();
   const isKeyError = (error) => error instanceof MeshmarkError && error.code.startsWith("key.");
-  assert.throws(() => meshmark.embed(meshmark.demoModel(), undefined, "TAG", new Uint8Array(31)), isKeyError);
+  assert.throws(() => meshmark.embed(meshmark.demoModel(), "TAG", new Uint8Array(31)), isKeyError);
 });
 
-test("an aborted signal stops the work with code aborted", async () => {
+test("a listener that throws stops the work with code aborted", async () => {
   await meshmark.init();
-  const measure = () => meshmark.measure(meshmark.demoModel(), undefined, undefined, AbortSignal.abort());
-  const detect = () => meshmark.detect(meshmark.demoModel(), undefined, new Uint8Array(32), undefined, undefined, undefined, AbortSignal.abort());
-  for (const work of [measure, detect]) {
+  const [model, key] = [meshmark.demoModel(), new Uint8Array(32)];
+  let heard = 0;
+  const onProgress = () => {
+    heard++;
+    throw new Error("enough");
+  };
+  const calls = [() => meshmark.embed(model, "TAG", key, { onProgress }), () => meshmark.measure(model, { onProgress }), () => meshmark.detect(model, key, { onProgress })];
+  for (const work of calls) {
     assert.throws(work, (error) => error instanceof MeshmarkError && error.code === "aborted");
   }
+  assert.equal(heard, calls.length, "it was told more after it had thrown");
+});
+
+test("a module that stops says why on the console, and the caller is told internal", () => {
+  const output = fresh(`
+    import { init, inspect } from "meshmark";
+    console.error = (text) => console.log(text);
+    await init();
+    const lying = Object.defineProperty(new Uint8Array(1), "length", { value: 2 ** 32 - 1 }); // more than a module can ever hold
+    try { inspect(new Uint8Array(4), { files: { lying } }); } catch (error) { console.log(error.name, error.code); }`);
+  const [said, told] = output.split(/\n(?=MeshmarkError)/);
+  assert.match(said, /^meshmark: panicked at .+\.rs:\d+:\d+:\s+capacity overflow/);
+  assert.equal(told, "MeshmarkError internal");
 });
 
 test("where there is no Worker, createClient rejects with a code", async () => {

@@ -27,11 +27,11 @@ for (const [path, read] of [
       return;
     }
     const host = read(file);
-    const { model: marked, report } = embed(host, undefined, TAG, key);
+    const { model: marked, report } = embed(host, TAG, key);
     t.diagnostic(`RMS ${(report.rmsRel * 100).toFixed(4)} % of the diagonal; as marked ${bounds(report.readBack)}`);
     await assertNoNewErrors(host, marked);
     const optimised = await optimise(marked);
-    const reading = extract(measure(optimised, undefined), key);
+    const reading = extract(measure(optimised), key);
     t.diagnostic(`after the optimiser ${bounds(reading)}`);
     assert.equal(reading.verdict, "found", reading.reason ?? "");
     assert.equal(reading.tag, TAG);

@@ -20,7 +20,12 @@ export function readContract(file) {
       types.set(symbol.name, checker.getDeclaredTypeOfSymbol(symbol));
     }
   }
-  return { functions, differences: (typeName, value) => compare(types.get(typeName), value, typeName) };
+  return {
+    functions,
+    /** The names that an interface declares, with those that it inherits. */
+    properties: (typeName) => types.get(typeName).getProperties().map(({ name }) => name),
+    differences: (typeName, value) => compare(types.get(typeName), value, typeName),
+  };
 
   function compare(type, value, path) {
     if (type.isUnion()) {

@@ -3,14 +3,36 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import validator from "gltf-validator";
+import * as meshmark from "meshmark";
+import * as attacks from "../app/attacks-wasm/attacks.js";
 
 export const repository = new URL("../../", import.meta.url);
 export const packageFolder = new URL("../meshmark/", import.meta.url);
 export const contractFile = fileURLToPath(new URL("src/wasm/types.d.ts", repository));
 
+/** What a wasm module exports beside its functions: what loads it, and what is run as soon as it is loaded. */
+export const LOADING = ["default", "initSync", "start"];
+
 export const OWNER = "Test Owner";
 export const PASSPHRASE = "a passphrase for tests only";
 export const TAG = "TEST-42";
+
+/** As an OBJ file. */
+export const CUBE = `
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8`;
 
 const sharedModels = new URL("../shared/models/", repository);
 
@@ -22,6 +44,12 @@ export function sharedModel(path, t) {
   }
   t.skip(`../shared/models/${path} is not here`);
   return null;
+}
+
+/** The demo model with 30 % of its triangles, for what does not depend on a model's size: both carriers still hold a mark in it. */
+export async function smallModel() {
+  await Promise.all([meshmark.init(), attacks.default({ module_or_path: readFileSync(new URL("../app/attacks-wasm/attacks_bg.wasm", import.meta.url)) })]);
+  return attacks.attack(meshmark.demoModel(), ["simplify 70 %"]);
 }
 
 /** A .glb of the vertices and triangles of an OBJ file, nothing else. */

@@ -34,6 +34,13 @@ test("it holds the built files, the module, words and licences, and nothing else
   }
 });
 
+test("it says where its sources, its page and its issues are", () => {
+  const { repository, homepage, bugs } = JSON.parse(readFileSync(join(project, "node_modules/meshmark/package.json"), "utf8"));
+  assert.deepEqual(repository, { type: "git", url: "git+https://github.com/meshmark/meshmark.git", directory: "www/meshmark" });
+  assert.match(homepage, /^https:\/\/github\.com\/meshmark\/meshmark/);
+  assert.match(bugs.url ?? bugs, /^https:\/\/github\.com\/meshmark\/meshmark\/issues$/);
+});
+
 test("every export resolves, types come first, and no workspace reference is left", () => {
   const manifest = JSON.parse(readFileSync(join(project, "node_modules/meshmark/package.json"), "utf8"));
   assert.doesNotMatch(JSON.stringify(manifest), /workspace:/);
@@ -63,7 +70,7 @@ for (const [module, moduleResolution] of [["NodeNext", "NodeNext"], ["ESNext", "
        import { createClient } from "meshmark/client";
        import "meshmark/worker";
        await init();
-       const marked: Embedding = embed(new Uint8Array(), undefined, "A", new Uint8Array(32));
+       const marked: Embedding = embed(new Uint8Array(), "A", new Uint8Array(32));
        const client = await createClient();
        const reading = await client.extract(await client.measure(marked.model), new Uint8Array(32));
        reading.verdict === "found";`,

@@ -290,7 +290,7 @@ async function embed(model: Model, tag: string, makeKey: KeyMaker, options: Embe
   const key = await makeKey(client, progress);
   progress.stage("read");
   try {
-    return await client.embed(model.bytes, model.buffers, tag, key, options, progress);
+    return await client.embed(model.bytes, tag, key, { ...options, files: model.buffers, signal: progress.signal, onProgress: progress.onProgress });
   } finally {
     key.fill(0);
   }

@@ -29,6 +29,8 @@ export class Stage implements Showing {
   #viewer: Viewer | undefined;
   /** Counts the models shown: a slow one that has been replaced must not appear. */
   #turn = 0;
+  /** How many models are on their way to the canvas. */
+  #numLoading = 0;
 
   constructor(view: HTMLElement, events: StageEvents) {
     this.#root = find("[data-stage]", view);
@@ -95,16 +97,23 @@ export class Stage implements Showing {
   async #preview(turn: number, show: () => Promise<void>): Promise<void> {
     const none = find(".no-preview", this.#viewing);
     none.hidden = true;
+    this.#load(1);
     try {
       await show();
     } catch (error) {
       console.warn("No preview:", error);
       none.hidden = turn !== this.#turn;
     }
+    this.#load(-1);
     this.#canvas.hidden = !none.hidden;
     for (const button of this.#viewing.querySelectorAll<HTMLButtonElement>(".toolbar button")) {
       button.disabled = !none.hidden;
     }
+  }
+
+  #load(change: 1 | -1): void {
+    this.#numLoading += change;
+    this.#viewing.setAttribute("aria-busy", String(this.#numLoading > 0));
   }
 
   /** three.js comes with the first model. */

@@ -70,7 +70,7 @@ export abstract class View<S extends Showing> {
 
   async #inspect(model: Model): Promise<[Inspection | undefined, HTMLElement | null]> {
     try {
-      const inspection = await (await engine).inspect(model.bytes, model.buffers);
+      const inspection = await (await engine).inspect(model.bytes, { files: model.buffers });
       return [inspection, this.foresee(inspection)];
     } catch (error) {
       return [undefined, errorCard(this.cannot, error)];

@@ -12,6 +12,7 @@ export type {
   CarrierReading,
   DetailedExtraction,
   Details,
+  DetectOptions,
   EmbedOptions,
   EmbedReport,
   Embedding,
@@ -20,6 +21,8 @@ export type {
   Forecast,
   Input,
   Inspection,
+  InspectOptions,
+  MeasureOptions,
   MeshmarkErrorObject,
   OnProgress,
   Payload,
@@ -71,11 +74,14 @@ async function readFile(url: string | URL): Promise<BufferSource> {
   return process.getBuiltinModule("node:fs/promises").readFile(new URL(url));
 }
 
-/** The module's function, with its errors made `MeshmarkError`s. */
+/** The module's function, with its errors made `MeshmarkError`s. More arguments than it takes would be ignored in silence. */
 function guarded<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
   return (...args: Arguments): Result => {
     if (!started) {
       throw new MeshmarkError("init.missing", "Call init() and wait for it first.");
+    }
+    if (args.length > f.length) {
+      throw new MeshmarkError("options.argument", `There are ${args.length} arguments; it takes at most ${f.length}.`);
     }
     try {
       return f(...args);

@@ -1,13 +1,13 @@
 /** A marked model and its key, and whatever can be done to the one and read with the other. */
 import type { Extraction } from "meshmark";
 import { createClient, type Client } from "meshmark/client";
-import type { Attack, Quality } from "../../attacks-wasm/attacks.js";
+import type { Attack } from "../../attacks-wasm/attacks.js";
 import { renamed, type Model } from "../model";
 import { detect } from "../reading";
 import type { Progress } from "../task";
 import { STAGES } from "../words";
 import type { Finding, Level, Telling, Work } from "./attempt";
-import { attacker } from "./engine";
+import { attack, catalogue, quality } from "./engine";
 
 /** What no catalogue has, for it takes a key: the copy is marked again, by nobody's key. */
 export const SECOND_MARK = "second mark by another key";
@@ -35,10 +35,10 @@ export class Bench {
     const client = await createClient(); // of its own: the other views need not wait
     try {
       const reading = await detect(client, marked, key, null, progress);
-      const { vertices, triangles } = await client.inspect(marked.bytes, marked.buffers, progress);
-      const quality = { rmsRel: 0, hausdorffRel: 0, msdm: 0, vertices, triangles };
-      const { result: catalogue } = await attacker.ask("catalogue", [], { signal: progress.signal });
-      return new Bench(marked, key, client, { reading, quality, level: levelOf(reading, reading.number) }, catalogue);
+      const { vertices, triangles } = await client.inspect(marked.bytes, { files: marked.buffers, signal: progress.signal });
+      const nothing = { rmsRel: 0, hausdorffRel: 0, msdm: 0, vertices, triangles };
+      const first = { reading, quality: nothing, level: levelOf(reading, reading.number) };
+      return new Bench(marked, key, client, first, await catalogue({ signal: progress.signal }));
     } catch (error) {
       key.fill(0);
       client.dispose();
@@ -76,30 +76,26 @@ export class Bench {
 
   async #attack(model: Model, steps: string[], seed: number, { say, signal }: Telling): Promise<Model> {
     say("Making the copy …", null);
-    const { result } = await attacker.ask("attack", [model.bytes, model.buffers, steps, seed], { signal });
-    return glb(model.name, result as Model["bytes"]);
+    const bytes = await attack(model.bytes, steps, { files: model.buffers, seed, signal });
+    return glb(model.name, bytes as Model["bytes"]);
   }
 
   async #markAgain(model: Model, { say, signal }: Telling): Promise<Model> {
     const tag = "OTHER";
     const key = crypto.getRandomValues(new Uint8Array(KEY_BYTES));
     say("Marking the copy by another key …", null);
-    const { model: bytes, files } = await this.#client.embed(model.bytes, model.buffers, tag, key, {}, { signal });
+    const { model: bytes, files } = await this.#client.embed(model.bytes, tag, key, { files: model.buffers, signal });
     return { ...model, bytes: bytes as Model["bytes"], buffers: { ...model.buffers, ...files } };
   }
 
   async #judge(copy: Model, { say, signal }: Telling): Promise<Finding> {
     say("Measuring what was paid …", null);
-    const quality = await qualityOf(this.marked, copy, signal);
+    const { bytes, buffers: referenceFiles } = this.marked;
+    const cost = await quality(bytes, copy.bytes, { referenceFiles, files: copy.buffers, signal });
     say(`${STAGES.test} …`, null);
     const reading = await detect(this.#client, copy, this.#key, null, { signal, onProgress: (stage, fraction) => say(`${STAGES[stage]} …`, fraction) });
-    return { reading, quality, level: levelOf(reading, this.first.reading.number) };
+    return { reading, quality: cost, level: levelOf(reading, this.first.reading.number) };
   }
-}
-
-async function qualityOf(marked: Model, copy: Model, signal: AbortSignal): Promise<Quality> {
-  const { result } = await attacker.ask("quality", [marked.bytes, marked.buffers, copy.bytes, copy.buffers], { signal });
-  return result;
 }
 
 function levelOf({ verdict, number }: Extraction, own: number | null): Level {

@@ -214,7 +214,7 @@ export class Break extends View<BreakStage> {
     this.stage.describeCopy(title, state === "running" ? words : capital(cameOf(attempt)), state === "done" ? (finding?.level ?? null) : null);
     if (copy && copy !== this.#broughtCopy) {
       this.#broughtCopy = copy;
-      void copy().then((model) => (attempt === this.#shown ? this.stage.showCopy(model) : undefined));
+      void this.stage.showCopy(copy);
     }
   }
 }

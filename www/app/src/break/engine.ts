@@ -1,14 +1,17 @@
 /** The attacks' module, in a worker of its own. */
-import type * as attacks from "../../attacks-wasm/attacks.js";
-import { Asker } from "../asker";
+import type { Attack, AttackOptions, Quality, QualityOptions } from "../../attacks-wasm/attacks.js";
+import { Remote, type CallOptions } from "../remote";
 
-export interface Questions {
-  catalogue: { args: []; result: attacks.Attack[] };
-  attack: { args: [model: Uint8Array, files: attacks.Files, steps: string[], seed: number]; result: Uint8Array };
-  quality: {
-    args: [reference: Uint8Array, referenceFiles: attacks.Files, model: Uint8Array, files: attacks.Files];
-    result: attacks.Quality;
-  };
+const remote = new Remote(() => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+
+export function catalogue(options?: CallOptions): Promise<Attack[]> {
+  return remote.call("catalogue", [], options);
 }
 
-export const attacker = new Asker<Questions>(() => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+export function attack(model: Uint8Array, steps: string[], options?: AttackOptions & CallOptions): Promise<Uint8Array> {
+  return remote.call("attack", [model, steps], options);
+}
+
+export function quality(reference: Uint8Array, model: Uint8Array, options?: QualityOptions & CallOptions): Promise<Quality> {
+  return remote.call("quality", [reference, model], options);
+}

@@ -5,7 +5,7 @@ import { startIntake } from "../intake";
 import type { Model } from "../model";
 import type { Showing, StageEvents } from "../stage";
 import { bytes, count } from "../words";
-import type { Level } from "./attempt";
+import type { Copy, Level } from "./attempt";
 import type { Pair, PairLook } from "./pair";
 
 export class BreakStage implements Showing {
@@ -16,6 +16,8 @@ export class BreakStage implements Showing {
   #look: PairLook = { wireframe: false, raking: false };
   /** Counts what is shown on either side: a slow one that has been replaced must not appear. */
   #turn = 0;
+  /** How many models are on their way to a canvas. */
+  #numLoading = 0;
 
   constructor(view: HTMLElement, events: StageEvents) {
     this.#intake = find("[data-intake]", view);
@@ -46,9 +48,9 @@ export class BreakStage implements Showing {
   }
 
   /** Shows a copy beside the model, in place of any other. */
-  async showCopy(model: Model): Promise<void> {
+  async showCopy(copy: Copy): Promise<void> {
     const turn = ++this.#turn;
-    await this.#preview(turn, (pair) => pair.showCopy(model, () => turn === this.#turn));
+    await this.#preview(turn, async (pair) => pair.showCopy(await copy(), () => turn === this.#turn));
   }
 
   /** Takes the copy away again. */
@@ -74,6 +76,7 @@ export class BreakStage implements Showing {
 
   async #preview(turn: number, show: (pair: Pair) => Promise<void>): Promise<void> {
     const none = find(".no-preview", this.#viewing);
+    this.#load(1);
     try {
       await show(await this.#loadPair());
       none.hidden = true;
@@ -81,6 +84,12 @@ export class BreakStage implements Showing {
       console.warn("No preview:", error);
       none.hidden = turn !== this.#turn;
     }
+    this.#load(-1);
+  }
+
+  #load(change: 1 | -1): void {
+    this.#numLoading += change;
+    this.#viewing.setAttribute("aria-busy", String(this.#numLoading > 0));
   }
 
   /** three.js comes with the first model. */

@@ -1,23 +1,34 @@
-/** The study's module, in a worker of its own. */
-import type * as study from "../../study-wasm/study.js";
-import { Asker, type Call } from "../asker";
+/** The study's module, in a worker of its own. Calls come back in the order in which they were made. */
+import type { Errors, ErrorsOptions, Fields, HostsOptions, HostsRow, Parameters, Preparation, Prepared, PrepareOptions, Ranking, StudyMesh, TraceOptions, Tracing } from "../../study-wasm/study.js";
+import { Remote, type CallOptions } from "../remote";
+import type { Ranked } from "./worker";
 
-export interface Questions {
-  parameters: { args: []; result: study.Parameters };
-  prepare: { args: [model: Uint8Array, files: study.Files, preparation: study.Preparation]; result: study.Prepared };
-  rank: { args: [mesh: study.StudyMesh, ranking: study.Ranking]; result: Uint32Array };
-  fields: { args: [mesh: study.StudyMesh, ranking: study.Ranking]; result: study.Fields };
-  trace: {
-    args: [mesh: study.StudyMesh, smoothing: study.Smoothing, iterations: number, ranking: study.Ranking, numHosts: number];
-    result: study.Tracing;
-  };
-  hosts: { args: [mesh: study.StudyMesh, smoothing: study.Smoothing, iterations: number, options: study.HostsOptions]; result: study.HostsRow };
-  errors: { args: [mesh: study.StudyMesh, asked: study.ErrorsCase]; result: study.Errors[] };
+const remote = new Remote(() => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+
+export function parameters(options?: CallOptions): Promise<Parameters> {
+  return remote.call("parameters", [], options);
 }
 
-const asker = new Asker<Questions>(() => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+export function prepare(model: Uint8Array, preparation: Preparation, options?: PrepareOptions & CallOptions): Promise<Prepared> {
+  return remote.call("prepare", [model, preparation], options);
+}
 
-/** Asks, after all that was asked before; `errors` says how far it is. */
-export function ask<M extends keyof Questions>(method: M, args: Questions[M]["args"], call: Call = {}): Promise<{ result: Questions[M]["result"]; ms: number }> {
-  return asker.ask(method, args, call);
+export function rank(mesh: StudyMesh, ranking: Ranking, options?: CallOptions): Promise<Ranked> {
+  return remote.call("rank", [mesh, ranking], options);
+}
+
+export function fields(mesh: StudyMesh, ranking: Ranking, options?: CallOptions): Promise<Fields> {
+  return remote.call("fields", [mesh, ranking], options);
+}
+
+export function trace(mesh: StudyMesh, options: TraceOptions & CallOptions): Promise<Tracing> {
+  return remote.call("trace", [mesh], options);
+}
+
+export function hosts(mesh: StudyMesh, options: HostsOptions & CallOptions): Promise<HostsRow> {
+  return remote.call("hosts", [mesh], options);
+}
+
+export function errors(mesh: StudyMesh, options: ErrorsOptions & CallOptions): Promise<Errors[]> {
+  return remote.call("errors", [mesh], options);
 }

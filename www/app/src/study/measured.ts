@@ -4,7 +4,7 @@ import { announce, h } from "../dom";
 import { note } from "../outcome";
 import type { Task } from "../task";
 import { percent, problem } from "../words";
-import { ask } from "./engine";
+import { errors, hosts } from "./engine";
 import { Figure } from "./figure";
 import { hostsTable } from "./table";
 import { HOSTS, SMOOTHINGS, times } from "./words";
@@ -46,20 +46,17 @@ export class Measured {
     announce("Measuring Table I");
     for (const iterations of ITERATIONS) {
       task.say(`Table I: ${times(iterations)} …`, done++ / total);
-      const { result } = await ask("hosts", [mesh, smoothing, iterations, { draws: DRAWS, numHosts }], { signal: task.signal });
-      rows.push(result);
+      rows.push(await hosts(mesh, { smoothing, iterations, draws: DRAWS, numHosts, signal: task.signal }));
       this.#show(rows);
     }
     announce("Measuring Fig. 5");
     for (const { iterations, strength } of points) {
-      for (const hosts of every) {
+      for (const held of every) {
         const before = done++;
-        const words = `Fig. 5: ${HOSTS[hosts].toLowerCase()}, ${times(iterations)} at ${percent(strength)} …`;
+        const words = `Fig. 5: ${HOSTS[held].toLowerCase()}, ${times(iterations)} at ${percent(strength)} …`;
         task.say(words, before / total);
-        const onProgress = (fraction: number) => task.say(words, (before + fraction) / total);
-        const asked = { hosts, smoothing, iterations, strength, keys: KEYS };
-        const { result } = await ask("errors", [mesh, asked], { signal: task.signal, onProgress });
-        this.#figure.add(result);
+        const onProgress = (_: string, fraction: number) => task.say(words, (before + fraction) / total);
+        this.#figure.add(await errors(mesh, { hosts: held, smoothing, iterations, strength, keys: KEYS, signal: task.signal, onProgress }));
       }
     }
   }

@@ -6,7 +6,7 @@ import { errorCard, numbers, present } from "../outcome";
 import { runTask } from "../task";
 import { View } from "../view";
 import { count } from "../words";
-import { ask } from "./engine";
+import * as engine from "./engine";
 import { Measured } from "./measured";
 import { StudyStage } from "./stage";
 import type { Version } from "./viewer";
@@ -84,8 +84,8 @@ export class Study extends View<StudyStage> {
     }
     this.#say("Reading the model, and simplifying what is larger than the paper’s …");
     try {
-      const { result: mesh } = await ask("prepare", [model.bytes, model.buffers, this.#preparation.value as Preparation]);
-      const { result: parameters } = await ask("parameters", []);
+      const mesh = await engine.prepare(model.bytes, this.#preparation.value as Preparation, { files: model.buffers });
+      const parameters = await engine.parameters();
       if (turn !== this.#turn) {
         return;
       }
@@ -113,8 +113,7 @@ export class Study extends View<StudyStage> {
       return;
     }
     await this.run(async (controller) => {
-      const { result: parameters } = await ask("parameters", []);
-      const measured = new Measured(this.#measured, mesh, choice.smoothing, choice.numHosts, parameters);
+      const measured = new Measured(this.#measured, mesh, choice.smoothing, choice.numHosts, await engine.parameters());
       const isDone = await runTask(this.outcome, controller, async (task) => {
         await measured.run(task);
         return true;
@@ -184,7 +183,7 @@ export class Study extends View<StudyStage> {
     this.stage.update({ mesh, tracing, fields });
     const { field, version } = this.stage.look;
     if (field !== "none" && field !== "deviation" && !fields[version]) {
-      fields[version] = (await ask("fields", [version === "after" ? tracing : mesh, choice.ranking])).result;
+      fields[version] = await engine.fields(version === "after" ? tracing : mesh, choice.ranking);
       if (traced === this.#traced) {
         this.stage.update({ mesh, tracing, fields });
       }
@@ -223,13 +222,13 @@ export class Study extends View<StudyStage> {
 
 /** What is known of the mesh before stays known while the ranking does. */
 async function trace(mesh: Prepared, choice: Choice, last: Traced | undefined): Promise<Traced> {
-  const { ranking, smoothing, iterations, numHosts } = choice;
-  const { result: tracing } = await ask("trace", [mesh, smoothing, iterations, ranking, numHosts]);
+  const { ranking } = choice;
+  const tracing = await engine.trace(mesh, choice);
   if (last?.choice.ranking === ranking) {
     const { before } = last.fields;
     return { ...last, choice, tracing, fields: before ? { before } : {} };
   }
-  const { result: order, ms } = await ask("rank", [mesh, ranking]);
+  const { order, ms } = await engine.rank(mesh, ranking);
   return { choice, tracing, fields: {}, ms, rejected: mesh.positions.length / 3 - order.length };
 }
 

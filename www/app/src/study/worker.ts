@@ -1,26 +1,18 @@
-/** The worker behind the study: it loads the study's module with the first question. */
-import load, * as study from "../../study-wasm/study.js";
-import { answerBy } from "../answerer";
-import type { Answer, Question } from "../asker";
-import type { Questions } from "./engine";
+/** The worker behind the study: it loads the study's module with the first call. */
+import load, { errors, fields, hosts, parameters, prepare, rank, trace, type Ranking, type StudyMesh } from "../../study-wasm/study.js";
+import { answer } from "../remote";
 
-answerBy((load as () => Promise<unknown>)(), answer);
-
-function answer(question: Question<Questions>, onProgress: (fraction: number) => void): Answer<Questions> {
-  switch (question.method) {
-    case "parameters":
-      return study.parameters();
-    case "prepare":
-      return study.prepare(...question.args);
-    case "rank":
-      return study.rank(...question.args);
-    case "fields":
-      return study.fields(...question.args);
-    case "trace":
-      return study.trace(...question.args);
-    case "hosts":
-      return study.hosts(...question.args);
-    case "errors":
-      return study.errors(...question.args, (_, fraction) => onProgress(fraction));
-  }
+export interface Ranked {
+  /** Vertices, the most stable first. */
+  order: Uint32Array;
+  /** How long that took, in milliseconds, the way to this worker and back left out. */
+  ms: number;
 }
+
+function timedRank(mesh: StudyMesh, ranking: Ranking): Ranked {
+  const since = performance.now();
+  const order = rank(mesh, ranking);
+  return { order, ms: performance.now() - since };
+}
+
+answer({ parameters, prepare, rank: timedRank, fields, trace, hosts, errors }, () => (load as () => Promise<unknown>)());

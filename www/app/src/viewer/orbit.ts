@@ -1,4 +1,7 @@
-/** An eye on a scene: orbit by mouse, touch and keys, lights that go with it. Draws only when something has changed. */
+/**
+ * An eye on a scene: orbit by mouse, touch and keys, lights that go with it. Draws only when something has changed: the canvas's
+ * `data-state` says `moving` until what there is to be seen stands there, and then `still`.
+ */
 import {
   DirectionalLight,
   NeutralToneMapping,
@@ -36,6 +39,7 @@ interface Pose {
 
 export class Orbit {
   readonly scene = new Scene();
+  readonly #canvas: HTMLCanvasElement;
   readonly #renderer: WebGLRenderer;
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW);
   readonly #light = new DirectionalLight();
@@ -47,6 +51,7 @@ export class Orbit {
 
   /** @throws where the browser has no WebGL 2 */
   constructor(canvas: HTMLCanvasElement) {
+    this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.#renderer.toneMapping = NeutralToneMapping;
@@ -117,10 +122,12 @@ export class Orbit {
 
   /** Draws at the next frame, once; movement that is still dying down asks for the one after it. */
   draw(): void {
+    this.#canvas.dataset["state"] = "moving";
     this.#frame ||= requestAnimationFrame(() => {
       this.#frame = 0;
       this.#controls.update();
       this.#renderer.render(this.scene, this.#camera);
+      this.#canvas.dataset["state"] = this.#frame ? "moving" : "still";
     });
   }
 

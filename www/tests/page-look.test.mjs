@@ -1,0 +1,155 @@
+// How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
+import assert from "node:assert/strict";
+import { button, canvas, drawn, dropped, facts, headline, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
+import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+
+onPage("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
+  const { positions, indices } = torus();
+  const split = indices.flatMap((corner) => positions.slice(corner * 3, corner * 3 + 3));
+  const up = split.map((_, i) => Number(i % 3 === 1));
+  const whole = onDisk("whole.glb", glbOf({ positions, indices }));
+  const seams = onDisk("seams.glb", glbOf({ positions: split, indices: indices.map((_, i) => i), normals: up }));
+  const normals = () => view().getByRole("group", { name: "Normals" });
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(whole);
+  const surface = await looks();
+  await button("Raking light").press("Enter");
+  const raking = await looks();
+  await picture("raking");
+  assert.notDeepEqual(raking, surface);
+  assert.equal(await normals().isVisible(), false, "this file has no normals");
+
+  await dropped(seams);
+  await drawn();
+  assert.equal(await normals().isVisible(), false, "it is not their turn");
+  await button("Raking light").press("Enter");
+  assert.equal(await normals().isVisible(), true);
+  assert.deepEqual(await looks(), raking, "seams or the file's normals show");
+  await button("File’s own").press("Enter");
+  assert.notDeepEqual(await looks(), raking);
+  await button("Surface").press("Enter");
+  assert.equal(await normals().isVisible(), false);
+});
+
+onPage("after one visit the page works without a network, through a reload", async () => {
+  await page.getByText("Ready to work offline").waitFor();
+  await context.setOffline(true);
+  await page.reload();
+  await page.getByRole("button", { name: "Try the demo model" }).click();
+  await facts().getByText("demo.glb").waitFor();
+  await drawn();
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+  await page.getByRole("tab", { name: "Study" }).click();
+  await page.locator("#traced").getByText("Ranked anew").waitFor();
+  await page.getByRole("tab", { name: "Break" }).click();
+  await button("Try noise 0.1 %").click();
+  await view().locator('tr[data-state="done"]').waitFor();
+});
+
+onPage("the keyboard does all of it", async () => {
+  const press = async (...keys) => {
+    for (const key of keys) {
+      await page.keyboard.press(key);
+    }
+  };
+  const focused = () => page.evaluate(() => document.activeElement.textContent || document.activeElement.id);
+  await press("Tab");
+  assert.equal(await focused(), "Protect");
+  await press("ArrowRight");
+  assert.equal(await focused(), "Check");
+  await press("Home", "Tab");
+  assert.equal(await focused(), "Choose files");
+  await press("Tab", "Tab", "Enter");
+  await facts().getByText("demo.glb").waitFor();
+
+  await canvas().focus();
+  await page.locator("#preview").getByText("Tried with a key made for this preview.").waitFor(); // nothing else changes the view from here
+  const first = await looks();
+  await press("ArrowLeft", "ArrowUp", "+");
+  assert.notDeepEqual(await looks(), first, "the view did not move");
+  await press("0");
+  assert.deepEqual(await looks(), first, "the view did not come back");
+
+  await page.locator("#owner").focus();
+  await page.keyboard.type(OWNER);
+  await press("Tab");
+  await page.keyboard.type(PASSPHRASE);
+  await press("Tab", "Space");
+  assert.equal(await page.locator("#passphrase").getAttribute("type"), "text");
+  await press("Tab");
+  await page.keyboard.type(TAG);
+  await press("Enter");
+  await result().waitFor();
+  assert.match(await page.locator("#announcer").textContent(), /^Your mark is in the copy/);
+});
+
+onPage("every control has a name", async () => {
+  await page.getByRole("button", { name: "Try the demo model" }).click();
+  await facts().getByText("demo.glb").waitFor();
+  await assertNamed();
+  await page.getByRole("tab", { name: "Study" }).click();
+  await page.locator("#traced").getByText("Ranked anew").waitFor();
+  await assertNamed();
+  await page.getByRole("tab", { name: "Protect" }).click();
+  await mark();
+  await button("Try to break it").click();
+  await button("Try noise 0.1 %").click();
+  await view().locator('tr[data-state="done"]').waitFor();
+  await assertNamed();
+});
+
+async function assertNamed() {
+  const controls = await page.locator("button:visible, input:visible, select:visible, canvas[tabindex]:visible").all();
+  assert.ok(controls.length > 10);
+  for (const control of controls) {
+    const name = (await control.ariaSnapshot()).match(/"(.+)"/)?.[1];
+    assert.ok(name, await control.evaluate((element) => element.outerHTML));
+  }
+}
+
+for (const [name, options] of [
+  ["desktop-light", {}],
+  ["desktop-dark", { colorScheme: "dark" }],
+  ["mobile", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
+  ["narrow", { viewport: { width: 320, height: 640 } }],
+]) {
+  const fits = async () => {
+    await picture(`${name}-empty`);
+    await page.getByRole("button", { name: "Try the demo model" }).click();
+    await mark();
+    await drawn();
+    await picture(`${name}-marked`);
+    await assertFits();
+    await button("Try to break it").click();
+    await button("Try noise 0.1 %").click();
+    await view().locator('tr[data-state="done"]').waitFor();
+    await drawn();
+    await picture(`${name}-broken`);
+    await assertFits();
+  };
+  onPage(`the page fits ${name}`, fits, options);
+}
+
+async function assertFits() {
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `${overflow} px too wide`);
+  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
+}
+
+/** A torus with bumps, its triangles turned outwards. */
+function torus() {
+  const [around, across] = [48, 24];
+  const positions = [];
+  const indices = [];
+  for (let i = 0; i < around; i++) {
+    for (let j = 0; j < across; j++) {
+      const [u, v] = [(i / around) * 2 * Math.PI, (j / across) * 2 * Math.PI];
+      const radius = 0.4 + 0.02 * Math.sin(7 * u) * Math.cos(3 * v);
+      positions.push(...[Math.cos(u) * (1 + radius * Math.cos(v)), Math.sin(u) * (1 + radius * Math.cos(v)), radius * Math.sin(v)].map(Math.fround));
+      const corner = (a, b) => ((i + a) % around) * across + ((j + b) % across);
+      indices.push(corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 0), corner(1, 1), corner(0, 1));
+    }
+  }
+  return { positions, indices };
+}

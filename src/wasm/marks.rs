@@ -34,9 +34,10 @@ pub fn embed(
     let (payload, key) = (payload_from(&payload)?, key_from(key)?);
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let options = embed_options_from(&options)?;
-    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
-    let embedding =
-        watermark::embed(model, payload, &key, &options).map_err(thrown)?;
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
+    let embedding = watermark::embed(model, payload, &key, &options).map_err(thrown)?;
     let marked_files = Object::new();
     for (name, bytes) in &embedding.files {
         set(&marked_files, name, &Uint8Array::from(bytes.as_slice()))?;
@@ -57,7 +58,9 @@ pub fn embed(
 pub fn measure(model: &[u8], options: JsValue) -> Result<Vec<u8>, JsValue> {
     let options = Options::new(options, &["files", "onProgress"])?;
     let (files, mut listener) = (options.files("files")?, options.listener()?);
-    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
     let evidence = watermark::measure(model).map_err(thrown)?;
     Ok(evidence.to_bytes())
 }
@@ -75,7 +78,9 @@ pub fn detect(model: &[u8], key: &[u8], options: JsValue) -> Result<JsValue, JsV
     };
     let is_for_owner = options.is_set("details")?;
     let (files, mut listener) = (options.files("files")?, options.listener()?);
-    let model = Model::new(model).with_files(&files).with_progress(&mut listener);
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
     let extraction = watermark::detect(model, &key, expected).map_err(thrown)?;
     told(extraction, is_for_owner)
 }

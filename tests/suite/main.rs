@@ -2,10 +2,6 @@
 
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
-// In a worker, for a long test would keep the window from answering the driver, which then gives up.
-#[cfg(feature = "browser")]
-wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
-
 mod architecture;
 mod attack;
 #[cfg(not(target_arch = "wasm32"))]

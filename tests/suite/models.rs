@@ -1,4 +1,4 @@
-//! Research and sample models, where they lie beside the project; elsewhere these tests say that they were skipped.
+//! Research and sample models, which lie beside the project on some machines: `cargo xtask test` runs these tests there.
 #![cfg(not(target_arch = "wasm32"))]
 
 use crate::support::fixtures::{key, payload};
@@ -12,15 +12,10 @@ use meshmark::{
 };
 use std::path::{Path, PathBuf};
 
-fn model(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+fn model(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../shared/models")
-        .join(name);
-    if !path.exists() {
-        println!("skipped: {name} is not here");
-        return None;
-    }
-    Some(path)
+        .join(name)
 }
 
 /// The surface of a Wavefront .obj of triangles.
@@ -37,10 +32,9 @@ fn read_obj(path: &Path) -> Mesh {
 }
 
 #[test]
+#[ignore = "needs ../shared/models"]
 fn models_bunny_is_found_in_half_of_itself() {
-    let Some(path) = model("obj/stanford-bunny.obj") else {
-        return;
-    };
+    let path = model("obj/stanford-bunny.obj");
     let host = to_glb(&read_obj(&path));
     let options = EmbedOptions::default()
         .with_strength(Strength::new(0.0001).unwrap())
@@ -65,10 +59,9 @@ fn models_bunny_is_found_in_half_of_itself() {
 }
 
 #[test]
+#[ignore = "needs ../shared/models"]
 fn models_bunny_is_found_after_everything_that_keeps_its_shape() {
-    let Some(path) = model("obj/stanford-bunny.obj") else {
-        return;
-    };
+    let path = model("obj/stanford-bunny.obj");
     let host = to_glb(&read_obj(&path));
     let marked = embed(&host, payload(), &key(9), &EmbedOptions::default()).unwrap();
     assert!(
@@ -110,19 +103,17 @@ fn marked(path: &Path) -> Embedding {
 }
 
 #[test]
+#[ignore = "needs ../shared/models"]
 fn models_knight_is_marked_and_found() {
-    let Some(path) = model("gltf/chr_knight.glb") else {
-        return;
-    };
+    let path = model("gltf/chr_knight.glb");
     marked(&path);
 }
 
 /// Spheres, tori and boxes in a row, one of them shown twice: 34 neighbourhoods by connectivity, but every vertex has a place.
 #[test]
+#[ignore = "needs ../shared/models"]
 fn models_regular_shapes_are_marked_and_found() {
-    let Some(path) = model("gltf/ShapeCollection.glb") else {
-        return;
-    };
+    let path = model("gltf/ShapeCollection.glb");
     let marked = marked(&path);
     let mesh = Scene::gather(&Document::read(&marked.model, &Files::new()).unwrap())
         .unwrap()

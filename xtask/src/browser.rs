@@ -2,40 +2,31 @@
 
 use std::path::PathBuf;
 
-use crate::apt;
-use crate::process::{Failure, Result, find};
-
-const NAMES: [&str; 4] = [
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-];
-
-pub struct Browser {
-    pub chromium: PathBuf,
-    pub driver: PathBuf,
-}
+use crate::process::{Log, Result, check, command, find};
 
 /// Finds both on PATH, or installs Debian's.
-pub fn set_up() -> Result<Browser> {
+pub fn set_up(log: &mut Log) -> Result<()> {
     const BY_HAND: &str = "put `chromium` and `chromedriver` on PATH, then run this again";
-    if installed().is_none() {
-        apt::install(&["chromium", "chromium-driver"], BY_HAND)?;
+    let is_there = || chromium().is_some() && find("chromedriver").is_some();
+    if !is_there() {
+        log.run(
+            &mut command("sh xtask/apt-install.sh chromium chromium-driver"),
+            BY_HAND,
+        )?;
     }
-    let browser = installed()
-        .ok_or_else(|| Failure::new("Chromium or its driver is not on PATH", BY_HAND))?;
-    println!(
-        "{} and {}",
-        browser.chromium.display(),
-        browser.driver.display()
-    );
-    Ok(browser)
+    check(
+        is_there(),
+        || "Chromium or its driver is not on PATH".to_owned(),
+        BY_HAND,
+    )
 }
 
-fn installed() -> Option<Browser> {
-    Some(Browser {
-        chromium: NAMES.into_iter().find_map(find)?,
-        driver: find("chromedriver")?,
-    })
+pub fn chromium() -> Option<PathBuf> {
+    let names = [
+        "chromium",
+        "chromium-browser",
+        "google-chrome",
+        "google-chrome-stable",
+    ];
+    names.into_iter().find_map(find)
 }

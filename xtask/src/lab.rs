@@ -1,24 +1,36 @@
 //! Robustness, measured: docs/ROBUSTNESS.md.
 
-use std::process::Command;
-
-use crate::process::{Result, run};
+use crate::process::{Result, command};
 use crate::steps::Steps;
-use crate::{project, real};
 
 /// Starts the lab, which does all of it but installing other people's programs: with `--real` it is told where they are.
-pub fn lab(steps: &mut Steps, arguments: &[&str]) -> Result<()> {
-    let mut command = Command::new("cargo");
-    command
-        .args(["run", "--release", "--package", "meshmark-lab", "--"])
-        .current_dir(project::root());
+pub fn lab(arguments: &[&str]) -> Result<()> {
+    let mut steps = Steps::default();
+    let mut lab = command("cargo run --release --package meshmark-lab --");
     for argument in arguments {
-        command.arg(argument);
+        lab.arg(argument);
         if *argument == "--real" {
-            let with_blender = arguments.contains(&"--blender");
-            steps.run("other people's programs", || real::set_up(with_blender))?;
-            command.arg(project::real_tools());
+            lab.arg("target/real");
         }
     }
-    steps.run("lab", || run(&mut command, "see the error above"))
+    let mut after = vec![];
+    if arguments.contains(&"--real") {
+        let mut set_up = command("sh lab/real/set-up.sh target/real");
+        set_up.args(
+            arguments
+                .iter()
+                .filter(|argument| **argument == "--blender"),
+        );
+        steps.add("other people's programs", &[], move |log| {
+            log.run(
+                &mut set_up,
+                "see what is missing above: the Containerfile has all of it",
+            )
+        });
+        after.push("other people's programs");
+    }
+    steps.add("lab", &after, move |log| {
+        log.run(&mut lab, "see the error above")
+    });
+    steps.run()
 }

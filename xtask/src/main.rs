@@ -1,17 +1,13 @@
-//! What a developer or CI does with the project: `cargo xtask`. Only std, and no logic of the product.
+//! What a developer or CI does with the project: `cargo xtask`. No logic of the product.
 
-mod apt;
 mod bench;
 mod browser;
-mod debian;
+mod fuzz;
 mod lab;
 mod manifest;
 mod npm;
 mod page;
 mod process;
-mod project;
-mod python;
-mod real;
 mod serve;
 mod stamp;
 mod steps;
@@ -23,12 +19,13 @@ mod wasm;
 use std::process::ExitCode;
 
 use process::Failure;
-use steps::Steps;
 
 const USAGE: &str = "\
-cargo xtask build                 the wasm modules, for the npm package and the page
+cargo xtask build                 the wasm modules, the npm package and the page
 cargo xtask serve [--port PORT]   the page on localhost, at port 8080 or the next free one
-cargo xtask test                  every check there is
+cargo xtask test                  what must pass with every commit
+cargo xtask test --all            that, and what takes longer: every check there is
+cargo xtask fuzz [--seconds N]    each fuzz target, for a minute
 cargo xtask bench [--runs N]      docs/PERFORMANCE.md: size, and times of 9 runs
 cargo xtask lab [--quick]         docs/ROBUSTNESS.md: what marks survive; more with --help
 cargo xtask lab --real            what they survive in other people's programs; Blender too with --blender
@@ -39,37 +36,37 @@ Each installs what it needs and is missing.";
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let mut steps = Steps::default();
+    let number = |text: &str, range: std::ops::RangeInclusive<u32>| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| {
+            let remedy = format!(
+                "give a whole number from {} to {}",
+                range.start(),
+                range.end()
+            );
+            Failure::new(format!("`{text}` cannot be used"), remedy)
+        })
+    };
     let result = match arguments[..] {
-        ["build"] => wasm::build(&mut steps),
-        ["serve"] => serve::serve(&mut steps, serve::DEFAULT_PORT),
-        ["serve", "--port", port] => port
-            .parse()
-            .map_err(|_| {
-                Failure::new(
-                    format!("{port} is not a port"),
-                    "give a number from 0 to 65535",
-                )
-            })
-            .and_then(|port| serve::serve(&mut steps, port)),
-        ["test"] => test::test(&mut steps),
-        ["bench"] => bench::bench(&mut steps, bench::DEFAULT_RUNS),
-        ["bench", "--runs", runs] => {
-            bench::parse_runs(runs).and_then(|runs| bench::bench(&mut steps, runs))
-        }
-        ["lab", ref arguments @ ..] => lab::lab(&mut steps, arguments),
-        ["study", ref arguments @ ..] => lab::lab(&mut steps, &[&["--study"], arguments].concat()),
+        ["build"] => page::build(),
+        ["serve"] => serve::serve(8080),
+        ["serve", "--port", port] => number(port, 0..=65535).and_then(serve::serve),
+        ["test"] => test::test(false),
+        ["test", "--all"] => test::test(true),
+        ["fuzz"] => fuzz::fuzz(fuzz::SECONDS),
+        ["fuzz", "--seconds", seconds] => number(seconds, 1..=u32::MAX).and_then(fuzz::fuzz),
+        ["bench"] => bench::bench(9),
+        ["bench", "--runs", runs] => number(runs, 1..=u32::MAX).and_then(bench::bench),
+        ["lab", ref arguments @ ..] => lab::lab(arguments),
+        ["study", ref arguments @ ..] => lab::lab(&[&["--study"], arguments].concat()),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
         }
     };
-    steps.print_table();
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("\n{failure}");
-            ExitCode::FAILURE
-        }
+    if let Err(failure) = result {
+        eprintln!("\n{failure}");
+        return ExitCode::FAILURE;
     }
+    ExitCode::SUCCESS
 }

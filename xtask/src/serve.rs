@@ -1,31 +1,46 @@
 //! The built page on localhost.
 
 use std::os::unix::process::CommandExt;
+use std::process::Command;
 
-use crate::process::{Failure, Result};
+use crate::manifest::{self, Manifest, Module};
+use crate::process::{Failure, Result, path};
 use crate::steps::Steps;
-use crate::{npm, page, project, wasm};
+use crate::{npm, page, wasm};
 
-pub const DEFAULT_PORT: u16 = 8080;
-
-/// Builds the page and serves it, at `port` or the next free one, until stopped.
-pub fn serve(steps: &mut Steps, port: u16) -> Result<()> {
-    wasm::build(steps)?;
-    steps.run("page", page::build)?;
-    steps.print_table();
-    let mut server = npm::program("vite");
-    server
-        .args([
-            "preview",
-            "--host",
-            "127.0.0.1",
-            "--port",
-            &port.to_string(),
-        ])
-        .current_dir(project::www().join("app"));
+/// Builds the page and serves it, at `port` or the next free one, until stopped. The first time the page is there with its first
+/// module, that of marking and checking; the others are built behind it.
+pub fn serve(port: u32) -> Result<()> {
+    let manifest: Manifest = manifest::read(manifest::FILE)?;
+    let missing = |module: &&Module| !module.path().is_file();
+    let others: Vec<&Module> = manifest.modules.iter().skip(1).filter(missing).collect();
+    if others.is_empty() {
+        page::build()?;
+    } else {
+        let mut steps = Steps::default();
+        wasm::add_set_up(&mut steps, &[]);
+        let packaged = wasm::add_modules(&mut steps, &manifest, &manifest.modules[..1]);
+        let after: Vec<&str> = packaged.iter().map(String::as_str).collect();
+        steps.add("page without the other modules", &after, |log| {
+            page::make_early(log, &others)
+        });
+        steps.run_beside_each_other()?;
+        build_behind()
+            .map_err(|error| Failure::new(format!("xtask: {error}"), "run this again"))?;
+    }
+    let mut server = npm::program("vite", "preview --host 127.0.0.1 --port");
+    server.arg(port.to_string()).current_dir(path("www/app"));
     let error = server.exec(); // takes this process's place, so that a signal reaches the server itself
     Err(Failure::new(
         format!("vite cannot be started: {error}"),
         "remove www/node_modules, then run this again",
     ))
+}
+
+/// Starts `cargo xtask build`, which goes on beside the server.
+fn build_behind() -> std::io::Result<()> {
+    Command::new(std::env::current_exe()?)
+        .arg("build")
+        .spawn()
+        .map(drop)
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 
-use crate::process::{Result, file_failure};
+use crate::process::{Failure, Result};
 
 pub struct Stamp {
     path: PathBuf,
@@ -32,10 +32,11 @@ impl Stamp {
 
     /// Says that the result is made.
     pub fn write(&self) -> Result<()> {
-        fs::write(&self.path, &self.fingerprint).map_err(|error| file_failure(&self.path, &error))
+        fs::write(&self.path, &self.fingerprint)
+            .map_err(|error| Failure::of_file(&self.path, &error))
     }
 }
 
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|error| file_failure(path, &error))
+    fs::read(path).map_err(|error| Failure::of_file(path, &error))
 }

@@ -1,67 +1,75 @@
 //! A Rust compiler for wasm32-unknown-unknown: the one at hand, or what rustup adds to it, or Debian's.
 
+use std::ffi::OsString;
 use std::fs;
-use std::path::PathBuf;
 use std::process::Command;
 
-use crate::process::{Result, find, output, run};
-use crate::{debian, project};
+use crate::process::{Log, Result, command, find, output, path, program_with};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
-pub const BY_HAND: &str =
-    "run `rustup target add wasm32-unknown-unknown` yourself, then this again";
 
-/// A compiler that has the target's standard library.
-pub struct Toolchain {
-    /// What to put first on PATH; `None` for the compiler that is there anyway.
-    bin: Option<PathBuf>,
-}
+/// The target directory of every wasm command: apart from the native one, for it can have another compiler.
+pub const TARGET_DIR: &str = "target/wasm";
 
-impl Toolchain {
-    /// Finds or makes one.
-    pub fn set_up() -> Result<Self> {
-        if default_has_target()? {
-            println!("rustc has {TARGET}");
-            return Ok(Self { bin: None });
-        }
-        if find("rustup").is_some() && std::env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0") {
-            run(
-                Command::new("rustup").args(["target", "add", TARGET]),
-                BY_HAND,
-            )?;
-            return Ok(Self { bin: None });
-        }
-        Ok(Self {
-            bin: Some(debian::set_up()?),
-        })
-    }
+/// Debian's compiler with the target's standard library.
+const DEBIAN: &str = "target/wasm-toolchain";
 
-    /// `cargo ARGUMENTS`, the first of which is the subcommand, for the target.
-    pub fn cargo(&self, arguments: &str) -> Command {
-        let mut command = match &self.bin {
-            None => Command::new("cargo"),
-            Some(bin) => debian::cargo(bin),
-        };
-        command
-            .args(arguments.split(' '))
-            .current_dir(project::root());
-        command
-            .env("CARGO_BUILD_TARGET", TARGET)
-            .env("CARGO_TARGET_DIR", project::wasm_target());
-        command
+/// Finds or makes a compiler that has the target's standard library.
+pub fn set_up(log: &mut Log) -> Result<()> {
+    const BY_HAND: &str = "run `rustup target add wasm32-unknown-unknown`, then this again";
+    if rustc_has_target()? {
+        log.say(format_args!("rustc has {TARGET}"));
+        Ok(())
+    } else if find("rustup").is_some() && std::env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0")
+    {
+        log.run(command("rustup target add").arg(TARGET), BY_HAND)
+    } else {
+        let mut script = command("sh xtask/debian-wasm.sh");
+        log.run(script.arg(path(DEBIAN)).arg(path(TARGET_DIR)), BY_HAND)
     }
 }
 
-fn default_has_target() -> Result<bool> {
-    let mut rustc = Command::new("rustc");
-    rustc
-        .args(["--print", "target-libdir", "--target", TARGET])
-        .current_dir(project::root());
-    let libraries = output(&mut rustc, "install Rust by rustup, then run this again")?;
-    let Ok(mut entries) = fs::read_dir(libraries) else {
-        return Ok(false);
-    };
-    Ok(entries.any(|entry| {
-        entry.is_ok_and(|entry| entry.file_name().to_string_lossy().starts_with("libcore-"))
+/// `cargo ARGUMENTS` for the target, by the compiler that was set up.
+pub fn cargo(arguments: &str) -> Result<Command> {
+    let mut cargo = program("cargo", arguments)?;
+    cargo
+        .env("CARGO_BUILD_TARGET", TARGET)
+        .env("CARGO_TARGET_DIR", path(TARGET_DIR));
+    Ok(cargo)
+}
+
+/// A program of that compiler.
+pub fn program(name: &str, arguments: &str) -> Result<Command> {
+    if rustc_has_target()? {
+        return Ok(program_with(name, arguments));
+    }
+    let bin = path(DEBIAN).join("bin");
+    let mut program = program_with(bin.join(name), arguments);
+    let mut folders = OsString::from(bin);
+    folders.push(":");
+    folders.push(std::env::var_os("PATH").unwrap_or_default());
+    program.env("PATH", folders);
+    // What rustup's cargo sets for its own compiler.
+    for variable in [
+        "CARGO",
+        "LD_LIBRARY_PATH",
+        "RUSTUP_TOOLCHAIN",
+        "RUSTC",
+        "RUSTFLAGS",
+    ] {
+        program.env_remove(variable);
+    }
+    Ok(program)
+}
+
+fn rustc_has_target() -> Result<bool> {
+    let mut rustc = command("rustc --print target-libdir --target");
+    let libraries = output(
+        rustc.arg(TARGET),
+        "install Rust by rustup, then run this again",
+    )?;
+    Ok(fs::read_dir(libraries).is_ok_and(|entries| {
+        let mut names = entries.flatten().map(|entry| entry.file_name());
+        names.any(|name| name.to_string_lossy().starts_with("libcore-"))
     }))
 }

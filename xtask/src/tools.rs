@@ -1,71 +1,75 @@
-//! wasm-bindgen's tools, of the very version that the lock file has.
+//! wasm-bindgen's tools, of the very version that Cargo.lock has.
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
-use crate::process::{Failure, Result, file_failure, run};
-use crate::project;
+use serde::Deserialize;
 
-/// Installs `wasm-bindgen` and `wasm-bindgen-test-runner` unless they are there, and returns their folder.
-pub fn set_up() -> Result<PathBuf> {
-    let version = locked_version("wasm-bindgen")?;
-    let bin = project::tools().join("bin");
-    let installed = Command::new(bin.join("wasm-bindgen"))
-        .arg("--version")
-        .output();
-    if installed
-        .is_ok_and(|said| said.stdout.trim_ascii() == format!("wasm-bindgen {version}").as_bytes())
-    {
-        println!("wasm-bindgen {version} is installed");
-        return Ok(bin);
+use crate::manifest;
+use crate::process::{Failure, Log, Result, command, output, path, program_with};
+
+#[derive(Deserialize)]
+struct Lock {
+    package: Vec<Package>,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    name: String,
+    version: String,
+}
+
+/// Where they are, `wasm-bindgen` and `wasm-bindgen-test-runner`.
+pub fn folder() -> PathBuf {
+    path("target/tools/bin")
+}
+
+/// Installs them unless they are there.
+pub fn set_up(log: &mut Log) -> Result<()> {
+    let lock: Lock = manifest::read("Cargo.lock")?;
+    let mut packages = lock.package.into_iter();
+    let package = packages.find(|package| package.name == "wasm-bindgen");
+    let version = package
+        .ok_or_else(|| {
+            Failure::new(
+                "Cargo.lock has no wasm-bindgen",
+                "run `cargo update --workspace`",
+            )
+        })?
+        .version;
+    let is_there = |tool: &str| {
+        let said = output(&mut program_with(folder().join(tool), "--version"), "");
+        said.is_ok_and(|said| said == format!("{tool} {version}"))
+    };
+    if is_there("wasm-bindgen") && is_there("wasm-bindgen-test-runner") {
+        log.say(format_args!("wasm-bindgen {version} is installed"));
+        return Ok(());
     }
-    // Its own lock file can name a release that a mirror of the registry does not have yet.
-    install(&version, &["--locked"]).or_else(|failure| {
-        println!("{failure}\nnow without the tool's own lock file");
-        install(&version, &[])
+    install(log, &version, "--locked").or_else(|_| {
+        log.say(
+            "not by the lock file that the tools bring: now by the newest versions that they take",
+        );
+        install(log, &version, "")
     })?;
-    Ok(bin)
+    let build = path(BUILD);
+    fs::remove_dir_all(&build).map_err(|error| Failure::of_file(&build, &error))
 }
 
-fn install(version: &str, options: &[&str]) -> Result<()> {
-    let build = project::tools().join("build");
-    let mut command = Command::new("cargo");
-    command
-        .args([
-            "install",
-            "--quiet",
-            "wasm-bindgen-cli",
-            "--version",
-            version,
-        ])
-        .args(options);
-    command.arg("--no-default-features"); // TLS: the test runner talks to a driver on this machine only
-    command
-        .arg("--root")
-        .arg(project::tools())
-        .env("CARGO_TARGET_DIR", &build);
-    run(
-        &mut command,
-        "see that the crates.io registry can be reached, then run this again",
-    )?;
-    fs::remove_dir_all(&build).map_err(|error| file_failure(&build, &error))
-}
+const BUILD: &str = "target/tools/build";
 
-/// The version of a package in Cargo.lock.
-fn locked_version(package: &str) -> Result<String> {
-    let path = project::root().join("Cargo.lock");
-    let lock = fs::read_to_string(&path).map_err(|error| file_failure(&path, &error))?;
-    let mut lines = lock.lines();
-    lines.find(|line| *line == format!("name = \"{package}\""));
-    let version = lines
-        .next()
-        .and_then(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
-    let version = version.ok_or_else(|| {
-        Failure::new(
-            format!("Cargo.lock has no {package}"),
-            "run `cargo generate-lockfile`",
-        )
-    })?;
-    Ok(version.to_owned())
+fn install(log: &mut Log, version: &str, lock: &str) -> Result<()> {
+    let mut install = command(&format!(
+        "cargo install --quiet wasm-bindgen-cli --version {version} {lock} --root target/tools \
+         --bin wasm-bindgen --bin wasm-bindgen-test-runner \
+         --no-default-features" // no TLS: the test runner talks to a driver on this machine only
+    ));
+    // They are built longer than they ever run.
+    install
+        .env("CARGO_TARGET_DIR", path(BUILD))
+        .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
+        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
+    log.run(
+        &mut install,
+        "see what cargo says above: a version that cannot be found, a registry that does not answer, or a compiler that is too old",
+    )
 }

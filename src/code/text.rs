@@ -109,3 +109,20 @@ impl TextCheck {
         [a, b, c]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::TextCheck;
+    use crate::key::Key;
+
+    /// Who has the key can give any bytes the check bits that hold: what no text begins as is none.
+    #[test]
+    fn bytes_that_no_text_gives_are_none() {
+        let check = TextCheck::new(&Key::from_bytes(&[1; Key::BYTES]).expect("32 bytes"));
+        let read = |bytes: &[u8]| check.text(&[bytes, &check.check(bytes)].concat());
+        assert_eq!(read(b"ab\0\0\0").as_deref(), Some("ab"));
+        for bytes in [b"\0\0\0\0\0", b"a\0b\0\0", b"a\xFFb\0\0"] {
+            assert_eq!(read(bytes), None, "{bytes:?}");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use crate::support::fixtures::key;
 use meshmark::Payload;
 use meshmark::internals::code::{
-    CHECK_BITS, Checked, Codeword, MESSAGE_BITS, SoftSymbol, Symbol, decode,
+    CHECK_BITS, Checked, Codeword, MESSAGE_BITS, SoftSymbol, Symbol, complete, decode,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -102,6 +102,18 @@ fn code_lists_distinct_messages_in_order_of_likelihood() {
         agreement(list[0]) >= agreement(MESSAGE),
         "nothing is likelier than the first"
     );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn code_completes_what_is_known_of_a_message() {
+    let symbols = received(MESSAGE, 900, 1.0);
+    for num_known in [0, 1, 48, MESSAGE_BITS] {
+        let known = MESSAGE >> (MESSAGE_BITS - num_known);
+        assert_eq!(complete(&symbols, known, num_known), MESSAGE, "{num_known}");
+    }
+    // What is known is kept, however much speaks against it.
+    let other = !(MESSAGE >> (MESSAGE_BITS - 48)) & ((1 << 48) - 1);
+    assert_eq!(complete(&symbols, other, 48) >> (MESSAGE_BITS - 48), other);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -81,4 +81,5 @@ fn text_that_does_not_fit_is_refused() {
     let error = check.message("123456", Block::Tc128).unwrap_err();
     let (bytes, capacity) = (6, 5);
     assert_eq!(error, TextError::TooLong { bytes, capacity });
+    assert!(check.message("12345", Block::Tc128).is_ok());
 }

@@ -142,6 +142,17 @@ fn arrivals(sent: usize, arrived: usize, channel: Channel) -> f64 {
         .sum()
 }
 
+/// A likelihood of so many symbols is smaller than any number.
+#[wasm_bindgen_test(unsupported = test)]
+fn run_length_survives_length() {
+    let sent: Vec<bool> = (0..2000).map(|place| random(place) < 0.5).collect();
+    let soft: Vec<f64> = sure(&run_length::encode(&sent))
+        .iter()
+        .map(|v| 0.2 * v)
+        .collect();
+    assert_eq!(signs(&run_length::decode(&soft, sent.len(), CLEAN)), sent);
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn run_length_survives_nothing_and_nonsense() {
     assert_eq!(run_length::decode(&[], 3, CLEAN), [0.0; 3]);

@@ -8,7 +8,7 @@ use clap::Args;
 use meshmark::internals::attack::{Step, chain, step};
 use meshmark::internals::geometry::Quality;
 use meshmark::internals::scene::to_glb;
-use serde_json::json;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Attack a model as the robustness tables do, and measure what that cost it
@@ -32,15 +32,25 @@ impl Attack {
         let mesh = open(&self.input)?.mesh()?;
         let attacked = chain(&mesh, &self.steps, self.seed);
         store(&self.output, &to_glb(&attacked))?;
-        let cost = json!({
-            "steps": self.steps.iter().map(Step::to_string).collect::<Vec<_>>(),
-            "seed": self.seed,
-            "vertices": attacked.positions.len(),
-            "triangles": attacked.triangles.len(),
-            "quality": Quality::between(&mesh, &attacked),
-        });
+        let cost = Cost {
+            steps: self.steps.iter().map(Step::to_string).collect(),
+            seed: self.seed,
+            vertices: attacked.positions.len(),
+            triangles: attacked.triangles.len(),
+            quality: Quality::between(&mesh, &attacked),
+        };
         Report::done(&cost, clock)
     }
+}
+
+#[derive(Serialize)]
+struct Cost {
+    steps: Vec<String>,
+    seed: u64,
+    vertices: usize,
+    triangles: usize,
+    #[serde(flatten)]
+    quality: Quality,
 }
 
 fn attack_step(name: &str) -> Result<Step, String> {

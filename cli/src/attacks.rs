@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::report::Report;
 use clap::Args;
-use meshmark::internals::attack::{Attack, CATALOGUE};
-use serde_json::json;
+use meshmark::internals::attack::entries;
 
 /// List every attack and its levels
 #[derive(Args)]
@@ -12,13 +11,6 @@ pub struct Attacks {}
 
 impl Attacks {
     pub fn run(self) -> Result<Report, Failure> {
-        let list = |attack: &'static Attack| {
-            json!({
-                "name": attack.name,
-                "family": attack.family,
-                "steps": attack.steps().map(|step| step.to_string()).collect::<Vec<_>>(),
-            })
-        };
-        Ok(Report::list(CATALOGUE.iter().map(list).collect()))
+        Ok(Report::list(serde_json::to_value(entries())?))
     }
 }

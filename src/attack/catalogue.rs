@@ -88,6 +88,28 @@ pub fn step(name: &str) -> Option<Step> {
     })
 }
 
+/// An attack as programs and pages list it.
+#[derive(Serialize)]
+pub struct Entry {
+    name: &'static str,
+    family: Family,
+    unit: &'static str,
+    levels: &'static [f64],
+    steps: Vec<String>,
+}
+
+/// Every attack there is.
+pub fn entries() -> Vec<Entry> {
+    let entry = |attack: &'static Attack| Entry {
+        name: attack.name,
+        family: attack.family,
+        unit: attack.unit,
+        levels: attack.levels,
+        steps: attack.steps().map(|step| step.to_string()).collect(),
+    };
+    CATALOGUE.iter().map(entry).collect()
+}
+
 impl Attack {
     /// The attack at each of its levels, or as it is.
     pub fn steps(&'static self) -> impl Iterator<Item = Step> {

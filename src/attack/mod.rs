@@ -31,7 +31,8 @@ mod weld;
 pub use average::average;
 pub use bend::bend;
 pub use catalogue::{
-    Attack, CATALOGUE, CROP, Family, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step, chain, step,
+    Attack, CATALOGUE, CROP, Entry, Family, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step, chain,
+    entries, step,
 };
 pub use crop::crop;
 pub use export::{bake, convert_units, mirror, swap_axes};

@@ -18,7 +18,7 @@ pub struct Study {
     /// V.
     pub vertices: usize,
     /// F.
-    pub faces: usize,
+    pub triangles: usize,
     /// MeshSmooth 0, 1 and 2.
     pub table_1: Vec<HostsRow>,
     /// Averages over keys.
@@ -47,7 +47,7 @@ pub fn study(
     let keys = first..first + u64::from(num_keys);
     Ok(Study {
         vertices: mesh.positions.len(),
-        faces: mesh.triangles.len(),
+        triangles: mesh.triangles.len(),
         table_1,
         figure_5: figure_5(mesh, Barycentre::Vertices, keys, progress)?,
     })

@@ -3,7 +3,7 @@
 use super::options::Options;
 use super::{argument, encoded, failure, thrown};
 use crate::Files;
-use crate::attack::{CATALOGUE, Family, Step, step};
+use crate::attack::{Step, entries, step};
 use crate::document::Document;
 use crate::geometry::Quality;
 use crate::mesh::Mesh;
@@ -19,25 +19,7 @@ const TYPES: &str = include_str!("attacks.d.ts");
 /// Every attack there is.
 #[wasm_bindgen(skip_typescript)]
 pub fn catalogue() -> Result<JsValue, JsValue> {
-    #[derive(Serialize)]
-    struct Entry {
-        name: &'static str,
-        family: Family,
-        unit: &'static str,
-        levels: &'static [f64],
-        steps: Vec<String>,
-    }
-    let entries: Vec<_> = CATALOGUE
-        .iter()
-        .map(|attack| Entry {
-            name: attack.name,
-            family: attack.family,
-            unit: attack.unit,
-            levels: attack.levels,
-            steps: attack.steps().map(|step| step.to_string()).collect(),
-        })
-        .collect();
-    encoded(&entries)
+    encoded(&entries())
 }
 
 /// A copy after some steps.

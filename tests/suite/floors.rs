@@ -37,7 +37,9 @@ fn floor(mesh: &str, attack: &str) -> Option<Option<f64>> {
     Some((line != "lost").then(|| line.parse().unwrap()))
 }
 
-const MESHES: [(&str, fn() -> Mesh); 4] = [
+type Shape = fn() -> Mesh;
+
+const MESHES: [(&str, Shape); 4] = [
     ("asteroid", || shapes::asteroid(40, 60)),
     ("torus knot", || shapes::torus_knot(160, 24)),
     ("terrain", || shapes::terrain(60)),
@@ -58,7 +60,7 @@ struct Marked {
 }
 
 fn marked_meshes() -> Vec<Marked> {
-    let mark = |(name, shape): (_, fn() -> Mesh)| {
+    let mark = |(name, shape): (_, Shape)| {
         let model = marked(&to_glb(&shape()), &key(1)).unwrap().model;
         let document = Document::read(&model, &Default::default()).unwrap();
         let mesh = Scene::gather(&document).unwrap().mesh;

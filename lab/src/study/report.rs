@@ -119,9 +119,9 @@ fn models(text: &mut String, results: &Results) {
                 outcome.vertices,
                 outcome.faces,
                 outcome.optimized.vertices,
-                outcome.optimized.faces,
+                outcome.optimized.triangles,
                 outcome.simplified.vertices,
-                outcome.simplified.faces
+                outcome.simplified.triangles
             ),
             Err(error) => writeln!(text, "| {name} | not studied: {error} | | | |"),
         };

@@ -1,6 +1,6 @@
 //! Whatever keeps a command from its report.
 
-use crate::report::{CANNOT_CHECK, print};
+use crate::exit::{self, CANNOT_CHECK};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -63,15 +63,15 @@ impl Failure {
 
     /// Says what is wrong: for programs on stdout, for people on stderr.
     pub fn tell(&self) -> ExitCode {
-        print(&json!({
+        eprintln!("meshmark: {self}");
+        let report = json!({
             "verdict": "cannot-check",
             "error": {
                 "code": self.code(),
                 "message": self.to_string(),
                 "path": self.pointer(),
             },
-        }));
-        eprintln!("meshmark: {self}");
-        ExitCode::from(CANNOT_CHECK)
+        });
+        exit::with(&report, CANNOT_CHECK)
     }
 }

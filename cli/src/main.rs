@@ -6,6 +6,7 @@ mod attack;
 mod attacks;
 mod clock;
 mod embed;
+mod exit;
 mod extract;
 mod failure;
 mod file;

@@ -1,16 +1,12 @@
 //! What a command prints, and how it exits.
 
 use crate::clock::Clock;
+use crate::exit::{self, CANNOT_CHECK, FOUND, NOT_FOUND};
 use crate::failure::Failure;
 use meshmark::Verdict;
 use serde::Serialize;
 use serde_json::Value;
-use std::io::{Write, stdout};
 use std::process::ExitCode;
-
-const FOUND: u8 = 0;
-const NOT_FOUND: u8 = 1;
-pub const CANNOT_CHECK: u8 = 2;
 
 /// A report and an exit code.
 pub struct Report {
@@ -51,12 +47,6 @@ impl Report {
     }
 
     pub fn tell(&self) -> ExitCode {
-        print(&self.json);
-        ExitCode::from(self.code)
+        exit::with(&self.json, self.code)
     }
-}
-
-/// Prints a report. Whoever closes the pipe has read enough.
-pub fn print(report: &Value) {
-    let _ = writeln!(stdout(), "{report:#}");
 }

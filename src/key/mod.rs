@@ -120,6 +120,7 @@ impl Key {
 
     /// The pseudo-random function of this key for one purpose: its own 16-byte sub-key by HKDF-SHA256 (RFC 5869),
     /// so that what one purpose reveals says nothing of another.
+    #[doc(hidden)]
     pub fn prf(&self, label: &str) -> Prf {
         let mut sub_key = Zeroizing::new([0; 16]);
         Hkdf::<Sha256>::new(Some(DOMAIN), &self.0)

@@ -117,3 +117,8 @@ fn architecture_files_of_the_lab_make_no_circle() {
 fn architecture_files_of_xtask_make_no_circle() {
     assert_eq!(Sources::of("xtask/src").circle(), None);
 }
+
+#[test]
+fn architecture_files_of_the_command_line_make_no_circle() {
+    assert_eq!(Sources::of("cli/src").circle(), None);
+}

@@ -257,41 +257,71 @@ fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
     hold_surfaces(name, &plain, keys);
 }
 
-#[test]
-fn bound_holds_for_regular_grids() {
-    hold_mesh("a box", &box_shape(16, DVec3::new(1.0, 0.8, 0.6)), 1_000);
+/// A commit tries so many keys on each surface; `cargo xtask test --all` tries more.
+const KEYS: u64 = 200;
+const ALL_KEYS: u64 = 1_000;
+
+fn a_box() -> Mesh {
+    box_shape(16, DVec3::new(1.0, 0.8, 0.6))
 }
 
-#[test]
-fn bound_holds_for_identical_boxes() {
+fn identical_boxes() -> Mesh {
     let part = box_shape(2, DVec3::new(0.05, 0.04, 0.03));
     let places = (0..64).map(|i| DVec3::new((i % 4).into(), (i / 4 % 4).into(), (i / 16).into()));
-    let boxes = Mesh::joined(places.map(|place| moved(&part, place * DVec3::new(0.2, 0.16, 0.12))));
-    hold_mesh("identical boxes", &boxes, 1_000);
+    Mesh::joined(places.map(|place| moved(&part, place * DVec3::new(0.2, 0.16, 0.12))))
 }
 
-#[test]
-fn bound_holds_for_a_mirrored_pair() {
+fn mirrored_pair() -> Mesh {
     let half = shapes::asteroid(20, 30);
     let mirrored = half
         .positions
         .iter()
         .map(|p| DVec3::new(3.0 - p.x, p.y, p.z));
     let other = turned(half.with_positions(mirrored.collect()));
-    hold_mesh("mirrored pair", &Mesh::joined([half, other]), 1_000);
+    Mesh::joined([half, other])
+}
+
+#[test]
+fn bound_holds_for_regular_grids() {
+    hold_mesh("a box", &a_box(), KEYS);
+}
+
+#[test]
+fn bound_holds_for_identical_boxes() {
+    hold_mesh("identical boxes", &identical_boxes(), KEYS);
+}
+
+#[test]
+fn bound_holds_for_a_mirrored_pair() {
+    hold_mesh("mirrored pair", &mirrored_pair(), KEYS);
 }
 
 #[test]
 fn bound_holds_without_flux() {
-    hold_mesh("doubled sheets", &doubled_sheets(5e-4), 1_000);
+    hold_mesh("doubled sheets", &doubled_sheets(5e-4), KEYS);
 }
 
 /// What undoes something too: the symbols that are no pilots are tested where the pilots agree best among thousands of ways.
-#[test]
-fn bound_holds_where_something_is_undone() {
+fn hold_what_is_undone(keys: u64) {
     let rock = shapes::asteroid(24, 36);
     let undone = solid::Surfaces::new(&rock).first_kind().collect();
-    hold_surfaces("what is undone", &undone, 60);
+    hold_surfaces("what is undone", &undone, keys);
+}
+
+#[test]
+fn bound_holds_where_something_is_undone() {
+    hold_what_is_undone(KEYS / 10);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask test --all"]
+fn bound_holds_for_all_keys() {
+    hold_mesh("a box", &a_box(), ALL_KEYS);
+    hold_mesh("identical boxes", &identical_boxes(), ALL_KEYS);
+    hold_mesh("mirrored pair", &mirrored_pair(), ALL_KEYS);
+    hold_mesh("doubled sheets", &doubled_sheets(5e-4), ALL_KEYS);
+    hold_what_is_undone(ALL_KEYS / 10);
+    hold_cells(ALL_KEYS);
 }
 
 /// Every charge is one that docs/SECURITY.md declares; and where a search of which nothing was declared has found a place, no pilot
@@ -308,7 +338,7 @@ fn charges_are_those_that_are_declared() {
         .map(of_kind)
         .collect();
     let mut num_split = 0;
-    for number in 0..60 {
+    for number in 0..KEYS / 10 {
         let key = random_key(number);
         let own = rings.read(&key);
         assert_eq!(own.hypotheses.len(), 10);
@@ -330,9 +360,13 @@ fn charges_are_those_that_are_declared() {
     assert!(num_split > 0, "no search was begun");
 }
 
-/// Cells of a note share nothing either: one direction, equal distances, and distances far beyond the frame.
 #[test]
 fn bound_holds_for_cells_of_notes() {
+    hold_cells(KEYS);
+}
+
+/// Cells of a note share nothing either: one direction, equal distances, and distances far beyond the frame.
+fn hold_cells(keys: u64) {
     let rock = shapes::asteroid(20, 30);
     let sphere = shapes::icosphere(3);
     let mut far = rock.clone();
@@ -341,7 +375,7 @@ fn bound_holds_for_cells_of_notes() {
         let block = Block::Tc128;
         let word = block.encode(&vec![0x5a; block.message_bytes()]);
         let mut tail = Tail::default();
-        for number in 0..1_000 {
+        for number in 0..keys {
             // Which ways are read depends on all cells' dithers: what is tested is charged for all of them.
             let readings = Cells::new(&random_key(number), block, 0.0125).read(&mesh);
             let ln_ps = readings

@@ -56,10 +56,10 @@ impl<'a> Steps<'a> {
         self.run_by(1)
     }
 
-    /// Runs two steps at a time, for their long parts use one core. The output of each is printed when it ends; meanwhile it is
-    /// in target/steps. Once one has failed none begins, and those that run are waited for.
+    /// Runs three steps at a time, for their long parts use one core or wait: they keep two busy. The output of each is printed when
+    /// it ends; meanwhile it is in target/steps. Once one has failed none begins, and those that run are waited for.
     pub fn run_beside_each_other(self) -> Result<()> {
-        self.run_by(2)
+        self.run_by(3)
     }
 
     fn run_by(self, num_workers: usize) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::{browser, fuzz, npm, page, wasm};
 const LINT: &str = "correct what clippy names above";
 const TESTS: &str = "see the failed tests above";
 
-/// What every native test step compiles alike, so that it is compiled once.
+/// What every native test step compiles alike, so that it is compiled once: tests, examples and what documentation shows.
 const NATIVE: &str = "cargo test --workspace";
 
 /// Runs the checks of a commit, or `all`. What is long stands before what is short, for it decides when the whole ends.
@@ -31,22 +31,25 @@ pub fn test(all: bool) -> Result<()> {
     });
     let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
     add(&mut steps, "native lint", &["format"], lint, LINT);
-    steps.add("documentation", &["native lint"], |log| {
+    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
+    let after = ["native tests"];
+    steps.add("documentation", &after, |log| {
         let mut doc = command("cargo doc --no-deps --package meshmark");
         log.run(
             doc.env("RUSTDOCFLAGS", "-Dwarnings"),
             "correct what rustdoc names above",
         )
     });
-    let native = format!("{NATIVE} --lib --bins --examples --tests");
-    add(&mut steps, "native tests", &["native lint"], &native, TESTS);
-    let after = ["native tests"];
-    add(
-        &mut steps,
-        "documentation tests",
-        &after,
-        &format!("{NATIVE} --doc"),
-        TESTS,
+    steps.add(
+        "reports of the command line",
+        &["page", "native tests"],
+        |log| {
+            let mut test = npm::npm("run test:command-line");
+            log.run(
+                test.env("MESHMARK_CLI", path("target/debug/meshmark")),
+                TESTS,
+            )
+        },
     );
     if path("../shared/models").is_dir() {
         let models = format!("{NATIVE} --test suite -- --ignored models::");
@@ -58,13 +61,8 @@ pub fn test(all: bool) -> Result<()> {
             TESTS,
         );
     }
-    steps.add("wasm lint", &["wasm compiler"], |log| {
-        let lint =
-            "clippy --lib --test suite --features wasm-marks,wasm-study,wasm-attacks -- -Dwarnings";
-        log.run(&mut wasm::cargo(&manifest, lint)?, LINT)
-    });
     // In a worker, as the package runs; there Chromium's engine is Node's.
-    let after = ["wasm lint", "wasm-bindgen tools", "Chromium"];
+    let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
     steps.add("wasm tests in Chromium", &after, |log| {
         let mut suite = wasm::cargo(&manifest, "test --test suite")?;
         suite
@@ -82,8 +80,19 @@ pub fn test(all: bool) -> Result<()> {
 
 /// Adds what is left out of a commit's checks.
 fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
-    let floors = format!("{NATIVE} --test suite -- --ignored floors::");
-    add(steps, "all floors", &["native tests"], &floors, TESTS);
+    let rest = format!("{NATIVE} --test suite -- --ignored --skip models::");
+    add(
+        steps,
+        "all floors and keys",
+        &["native tests"],
+        &rest,
+        TESTS,
+    );
+    steps.add("wasm lint", &["wasm compiler"], |log| {
+        let lint =
+            "clippy --lib --test suite --features wasm-marks,wasm-study,wasm-attacks -- -Dwarnings";
+        log.run(&mut wasm::cargo(manifest, lint)?, LINT)
+    });
     steps.add("wasm tests in Node", &["wasm tests in Chromium"], |log| {
         log.run(&mut wasm::cargo(manifest, "test --test suite")?, TESTS)
     });

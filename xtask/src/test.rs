@@ -23,15 +23,15 @@ pub fn test(all: bool) -> Result<()> {
         "cargo fmt --all --check",
         "run `cargo fmt --all`",
     );
+    let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
+    add(&mut steps, "native lint", &["format"], lint, LINT);
+    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
     steps.add("Chromium", &["format"], browser::set_up);
     steps.add("package and page tests", &["page", "Chromium"], |log| {
         run_npm(log, "test")
     });
-    let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
-    add(&mut steps, "native lint", &["format"], lint, LINT);
-    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
     let after = ["native tests"];
     steps.add("documentation", &after, |log| {
         let mut doc = command("cargo doc --no-deps --package meshmark");

@@ -25,20 +25,30 @@ pub fn add_modules<'a>(
     modules: &'a [Module],
 ) -> Vec<String> {
     let mut last = Vec::new();
+    let mut after_compile = "wasm compiler".to_owned();
     for module in modules {
         let compile = format!("compile {}", module.name);
         let package = format!("package {}", module.name);
-        steps.add(&compile, &["wasm compiler"], |log| {
+        // One after another, in one folder: what the library depends on is compiled once.
+        steps.add(&compile, &[&after_compile], |log| {
             let build =
                 "rustc --release --lib --crate-type cdylib --no-default-features --features";
             let mut build = cargo(manifest, &format!("{build} {}", module.feature))?;
-            build.env("CARGO_TARGET_DIR", target_dir(module));
-            log.run(&mut build, "correct what the compiler names above")
+            build.env("CARGO_TARGET_DIR", modules_dir());
+            log.run(&mut build, "correct what the compiler names above")?;
+            // Cargo gives the library the same name, whatever its features.
+            let compiled = modules_dir().join(format!("{TARGET}/release/meshmark.wasm"));
+            let kept = compiled_file(module);
+            let copied = fs::copy(&compiled, &kept);
+            copied
+                .map(drop)
+                .map_err(|error| Failure::of_file(&kept, &error))
         });
         let after = [&compile, "wasm-bindgen tools", "npm packages"];
         steps.add(&package, &after, |log| {
             package_module(log, manifest, module)
         });
+        after_compile = compile;
         last.push(package);
     }
     last
@@ -52,15 +62,19 @@ pub fn cargo(manifest: &Manifest, arguments: &str) -> Result<Command> {
     Ok(command)
 }
 
-/// A folder for each: Cargo gives the library the same name, whatever its features.
-fn target_dir(module: &Module) -> PathBuf {
-    path(TARGET_DIR).join(&module.feature)
+/// Where modules are compiled: beside the wasm tests, which use a folder at the same time.
+fn modules_dir() -> PathBuf {
+    path(TARGET_DIR).join("modules")
+}
+
+/// A module as the compiler left it.
+fn compiled_file(module: &Module) -> PathBuf {
+    modules_dir().join(format!("{}.wasm", module.feature))
 }
 
 /// Binds and optimises a module where anything changed, and weighs it.
 fn package_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result<()> {
-    let target_dir = target_dir(module);
-    let compiled = target_dir.join(format!("{TARGET}/release/meshmark.wasm"));
+    let compiled = compiled_file(module);
     let packaged = module.path();
     // The versions of wasm-bindgen and wasm-opt are in the compiled module and in npm's lock file.
     let inputs = [
@@ -68,7 +82,7 @@ fn package_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result
         read(&path(manifest::FILE))?,
         read(&path(npm::LOCK))?,
     ];
-    let stamp = Stamp::new(target_dir.join("module.stamp"), &inputs);
+    let stamp = Stamp::new(compiled.with_extension("stamp"), &inputs);
     if stamp.is_fresh() && packaged.is_file() {
         log.say(format_args!("{} is as it was", packaged.display()));
         return weigh(log, module);

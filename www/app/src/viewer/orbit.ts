@@ -56,7 +56,8 @@ export class Orbit {
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.#renderer.toneMapping = NeutralToneMapping;
     const pmrem = new PMREMGenerator(this.#renderer);
-    this.scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
+    // Without a blur before the filter: nobody sees it, and without a graphics card it takes half of a viewer's first second.
+    this.scene.environment = pmrem.fromScene(new RoomEnvironment()).texture;
     pmrem.dispose();
     this.scene.add(this.#camera.add(this.#light, this.#light.target));
 

@@ -98,6 +98,20 @@ pub fn command(words: &str) -> Command {
     program_with(program, arguments)
 }
 
+/// The same command, which gives way to others where processors are few.
+pub fn nice(command: &Command) -> Command {
+    let mut nice = Command::new("nice");
+    nice.arg(command.get_program()).args(command.get_args());
+    nice.current_dir(command.get_current_dir().unwrap_or(Path::new(".")));
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => nice.env(name, value),
+            None => nice.env_remove(name),
+        };
+    }
+    nice
+}
+
 /// The same, of a program whose path can have spaces.
 pub fn program_with(program: impl AsRef<OsStr>, arguments: &str) -> Command {
     let mut command = Command::new(program);

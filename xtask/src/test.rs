@@ -1,7 +1,7 @@
 //! The checks: what must pass with every commit, and what takes longer.
 
 use crate::manifest::{self, Manifest};
-use crate::process::{Log, Result, command, path};
+use crate::process::{Log, Result, command, nice, path};
 use crate::steps::Steps;
 use crate::toolchain::{TARGET, TARGET_DIR};
 use crate::{browser, fuzz, npm, page, wasm};
@@ -25,7 +25,10 @@ pub fn test(all: bool) -> Result<()> {
     );
     let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
     add(&mut steps, "native lint", &["format"], lint, LINT);
-    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
+    // The page's tests wait for the modules, which are compiled on one core each: the other tests give way to them.
+    steps.add("native tests", &["native lint"], |log| {
+        log.run(&mut nice(&command(NATIVE)), TESTS)
+    });
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
     steps.add("Chromium", &["format"], browser::set_up);
@@ -70,7 +73,7 @@ pub fn test(all: bool) -> Result<()> {
             // In seconds. The runner's own limits, 20 and 5, are for small suites on idle machines.
             .env("WASM_BINDGEN_TEST_TIMEOUT", "900")
             .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
-        log.run(&mut suite, TESTS)
+        log.run(&mut nice(&suite), TESTS)
     });
     if all {
         add_rest(&mut steps, &manifest);

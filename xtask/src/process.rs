@@ -98,7 +98,15 @@ pub fn command(words: &str) -> Command {
     program_with(program, arguments)
 }
 
-/// The same command, which gives way to others where processors are few.
+/// The same, of a program whose path can have spaces.
+pub fn program_with(program: impl AsRef<OsStr>, arguments: &str) -> Command {
+    let mut command = Command::new(program);
+    command.args(arguments.split_whitespace());
+    command.current_dir(path(""));
+    command
+}
+
+/// A command that gives way to others where processors are few.
 pub fn nice(command: &Command) -> Command {
     let mut nice = Command::new("nice");
     nice.arg(command.get_program()).args(command.get_args());
@@ -110,14 +118,6 @@ pub fn nice(command: &Command) -> Command {
         };
     }
     nice
-}
-
-/// The same, of a program whose path can have spaces.
-pub fn program_with(program: impl AsRef<OsStr>, arguments: &str) -> Command {
-    let mut command = Command::new(program);
-    command.args(arguments.split_whitespace());
-    command.current_dir(path(""));
-    command
 }
 
 /// A path from the workspace's root.

@@ -1,9 +1,6 @@
 //! The built page: the npm package's and the app's dist folders.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
 
 use crate::manifest::{self, Manifest, Module};
 use crate::process::{Failure, Log, Result, path};
@@ -68,26 +65,5 @@ export default () =>
 
 /// Of every source and every built file.
 fn stamp() -> Result<Stamp> {
-    let (www, mut files) = (path("www"), BTreeMap::new());
-    collect(&www, &mut files).map_err(|error| Failure::of_file(&www, &error))?;
-    let inputs = files
-        .iter()
-        .flat_map(|(path, bytes)| [path.as_os_str().as_encoded_bytes(), bytes]);
-    Ok(Stamp::new(
-        path("target/page.stamp"),
-        &inputs.collect::<Vec<_>>(),
-    ))
-}
-
-fn collect(folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let (path, name) = entry.map(|entry| (entry.path(), entry.file_name()))?;
-        if path.is_file() {
-            let bytes = fs::read(&path)?;
-            files.insert(path, bytes);
-        } else if name != "node_modules" && name != "tests" {
-            collect(&path, files)?;
-        }
-    }
-    Ok(())
+    Stamp::of_files(path("target/page.stamp"), &["www"], "")
 }

@@ -1,10 +1,12 @@
 //! Stamps: a file that keeps the fingerprint of what a result was made from, so that it is not made twice.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::hash::{DefaultHasher, Hasher};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::process::{Failure, Result};
+use crate::process::{Failure, Result, path};
 
 pub struct Stamp {
     path: PathBuf,
@@ -25,6 +27,19 @@ impl Stamp {
         }
     }
 
+    /// The same of a result that is made by `tool` from files and from every file in folders, but those of tests.
+    pub fn of_files(stamp: PathBuf, places: &[&str], tool: &str) -> Result<Self> {
+        let mut files = BTreeMap::new();
+        for place in places.iter().map(|place| path(place)) {
+            collect(&place, &mut files).map_err(|error| Failure::of_file(&place, &error))?;
+        }
+        let files = files
+            .iter()
+            .flat_map(|(path, bytes)| [path.as_os_str().as_encoded_bytes(), bytes]);
+        let inputs: Vec<&[u8]> = files.chain([tool.as_bytes()]).collect();
+        Ok(Self::new(stamp, &inputs))
+    }
+
     /// Whether the result that was last made came from the same inputs.
     pub fn is_fresh(&self) -> bool {
         fs::read_to_string(&self.path).is_ok_and(|kept| kept == self.fingerprint)
@@ -39,4 +54,18 @@ impl Stamp {
 
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).map_err(|error| Failure::of_file(path, &error))
+}
+
+fn collect(place: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) -> io::Result<()> {
+    if place.is_file() {
+        files.insert(place.to_owned(), fs::read(place)?);
+        return Ok(());
+    }
+    for entry in fs::read_dir(place)? {
+        let entry = entry?;
+        if entry.file_name() != "node_modules" && entry.file_name() != "tests" {
+            collect(&entry.path(), files)?;
+        }
+    }
+    Ok(())
 }

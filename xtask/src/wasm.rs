@@ -31,18 +31,7 @@ pub fn add_modules<'a>(
         let package = format!("package {}", module.name);
         // One after another, in one folder: what the library depends on is compiled once.
         steps.add(&compile, &[&after_compile], |log| {
-            let build =
-                "rustc --release --lib --crate-type cdylib --no-default-features --features";
-            let mut build = cargo(manifest, &format!("{build} {}", module.feature))?;
-            build.env("CARGO_TARGET_DIR", modules_dir());
-            log.run(&mut build, "correct what the compiler names above")?;
-            // Cargo gives the library the same name, whatever its features.
-            let compiled = modules_dir().join(format!("{TARGET}/release/meshmark.wasm"));
-            let kept = compiled_file(module);
-            let copied = fs::copy(&compiled, &kept);
-            copied
-                .map(drop)
-                .map_err(|error| Failure::of_file(&kept, &error))
+            compile_module(log, manifest, module)
         });
         let after = [&compile, "wasm-bindgen tools", "npm packages"];
         steps.add(&package, &after, |log| {
@@ -52,6 +41,26 @@ pub fn add_modules<'a>(
         last.push(package);
     }
     last
+}
+
+/// Compiles a module where anything changed. Cargo gives the library the same name whatever its features, and takes one module for
+/// another that has changed: so it is not asked where nothing did.
+fn compile_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result<()> {
+    let kept = compiled_file(module);
+    let rustc = output(&mut toolchain::program("rustc", "-vV")?, "install Rust")?;
+    let sources = ["src", "Cargo.toml", "Cargo.lock", manifest::FILE];
+    let stamp = Stamp::of_files(kept.with_extension("sources"), &sources, &rustc)?;
+    if stamp.is_fresh() && kept.is_file() {
+        log.say(format_args!("{} is as it was", kept.display()));
+        return Ok(());
+    }
+    let build = "rustc --release --lib --crate-type cdylib --no-default-features --features";
+    let mut build = cargo(manifest, &format!("{build} {}", module.feature))?;
+    build.env("CARGO_TARGET_DIR", modules_dir());
+    log.run(&mut build, "correct what the compiler names above")?;
+    let compiled = modules_dir().join(format!("{TARGET}/release/meshmark.wasm"));
+    fs::copy(&compiled, &kept).map_err(|error| Failure::of_file(&kept, &error))?;
+    stamp.write()
 }
 
 /// `cargo ARGUMENTS` for wasm, with the flags that modules are built with.

@@ -1,6 +1,10 @@
 /** The worker behind the study: it loads the study's module with the first call. */
-import load, { errors, fields, hosts, parameters, prepare, rank, trace, type Ranking, type StudyMesh } from "../../study-wasm/study.js";
+import load, * as study from "../../study-wasm/study.js";
+import type { Ranking, StudyMesh } from "../../study-wasm/study.js";
 import { answer } from "../remote";
+
+// By their module: while it is still being built its stand-in has none of them.
+const { errors, fields, hosts, parameters, prepare, rank, trace } = study;
 
 export interface Ranked {
   /** Vertices, the most stable first. */

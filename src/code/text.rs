@@ -47,6 +47,9 @@ impl Block {
     }
 
     /// The shortest block that holds a text.
+    ///
+    /// # Errors
+    /// Where the text is empty, longer than 29 bytes, or has a NUL.
     pub fn for_text(text: &str) -> Result<Block, TextError> {
         let bytes = text.len();
         if text.is_empty() {

@@ -24,7 +24,7 @@ fuzz_target!(|bytes: &[u8]| {
 /// A small asteroid with some of its vertices moved and some of its triangles changed, as the bytes say: 4 for each change.
 fn mesh(bytes: &[u8]) -> Option<Mesh> {
     let (&[rings, segments], changes) = bytes.split_first_chunk()?;
-    let mut mesh = shapes::asteroid(3 + usize::from(rings % 30), 3 + usize::from(segments % 40));
+    let mut mesh = shapes::asteroid(3 + u32::from(rings % 30), 3 + u32::from(segments % 40));
     for change in changes.chunks_exact(4) {
         let place = usize::from(change[0]) << 8 | usize::from(change[1]);
         let by = f64::from(change[3]) / 64.0 - 2.0;

@@ -285,7 +285,7 @@ fn wrong_keys_find_nothing() {
     let values: Vec<f64> = [&host, &marked]
         .into_iter()
         .map(|model| measured(model))
-        .flat_map(|evidence| (0..10).map(move |wrong| extract(&evidence, &key(wrong))))
+        .flat_map(|evidence| (0..25).map(move |wrong| extract(&evidence, &key(wrong))))
         .map(|answer| {
             assert!(
                 matches!(answer.verdict, Verdict::None | Verdict::CannotCheck),

@@ -41,9 +41,9 @@ struct Arguments {
     /// Every model at every strength, three times: a night.
     #[arg(long, conflicts_with = "quick")]
     full: bool,
-    /// Also programs that people have, from the folder that `cargo xtask lab --real` installed them in.
-    #[arg(long, value_name = "FOLDER")]
-    real: Option<PathBuf>,
+    /// Also programs that people have, which are installed into target/real.
+    #[arg(long)]
+    real: bool,
     /// Blender too.
     #[arg(long, requires = "real")]
     blender: bool,
@@ -136,6 +136,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
 
 /// Runs the grid, or the rest of it.
 fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> Result<(), String> {
+    if arguments.real {
+        real::install(&target.join("real"), arguments.blender)?;
+    }
     let (models, unread) = models::all(arguments.models.as_deref())?;
     let scope = scope(arguments, models, target);
     let said = said(arguments);
@@ -181,8 +184,8 @@ fn scope(arguments: &Arguments, mut models: Vec<models::Model>, target: &Path) -
         _ => Size::Usual,
     };
     models.retain(|model| model.size <= size);
-    if let Some(folder) = &arguments.real {
-        let tools = real::tools(folder, arguments.blender);
+    if arguments.real {
+        let tools = real::tools(&target.join("real"), arguments.blender);
         let scratch = target.join("lab-scratch");
         rows.extend(
             tools
@@ -212,7 +215,7 @@ fn said(arguments: &Arguments) -> Vec<String> {
     let flags = [
         ("--quick", arguments.quick),
         ("--full", arguments.full),
-        ("--real", arguments.real.is_some()),
+        ("--real", arguments.real),
         ("--blender", arguments.blender),
         ("--models FOLDER", arguments.models.is_some()),
     ];

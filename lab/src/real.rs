@@ -189,7 +189,21 @@ pub struct Tool {
     folder: PathBuf,
 }
 
-/// Every row; `folder` is where `cargo xtask lab --real` has installed the programs.
+/// Installs the programs into `folder`, unless they are there.
+///
+/// # Errors
+/// What the terminal says is missing.
+pub fn install(folder: &Path, with_blender: bool) -> Result<(), String> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("real/set-up.sh");
+    let mut set_up = Command::new("sh");
+    set_up.arg(script).arg(folder);
+    set_up.args(with_blender.then_some("--blender"));
+    let is_done = set_up.status().is_ok_and(|status| status.success());
+    let missing = "programs are missing: see above; the Containerfile has all that they take";
+    is_done.then_some(()).ok_or_else(|| missing.to_owned())
+}
+
+/// Every row; `folder` is where the programs are installed.
 pub fn tools(folder: &Path, with_blender: bool) -> Vec<Tool> {
     ROWS.into_iter()
         .filter(|(program, _)| with_blender || *program != Blender)

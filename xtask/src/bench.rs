@@ -1,54 +1,34 @@
 //! Size and speed, measured: docs/PERFORMANCE.md.
 
-use std::fs;
+use anyhow::Result;
 
-use crate::manifest::{self, Manifest};
-use crate::process::{Failure, Log, Result, command, output, path};
-use crate::steps::Steps;
-use crate::{browser, page, toolchain, wasm};
+use crate::manifest::Manifest;
+use crate::process::{Log, command, output, path};
+use crate::{browser, page, toolchain};
 
 /// Where criterion writes what it measured of each stage.
 const STAGES: &str = "target/criterion";
 
-/// Builds the command line and the npm package, times both `runs` times, and writes the document.
-pub fn bench(runs: u32) -> Result<()> {
-    let manifest: Manifest = manifest::read(manifest::FILE)?;
-    let mut steps = Steps::default();
-    steps.add("command line", &[], |log| {
-        let build = "cargo build --release --package meshmark-cli --target-dir target";
-        log.run(&mut command(build), "correct what the compiler names above")
-    });
-    wasm::add_set_up(&mut steps, &[]);
-    page::add(&mut steps, &manifest);
-    steps.add("Chromium", &[], browser::set_up);
-    steps.add("stages", &["page"], time_stages);
-    steps.add("measurements", &["Chromium", "stages"], |log| {
-        measure(log, &manifest, runs)
-    });
-    steps.run()
-}
-
-/// Times the stages one by one.
-fn time_stages(log: &mut Log) -> Result<()> {
-    let folder = path(STAGES);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).map_err(|error| Failure::of_file(&folder, &error))?;
+/// Builds the command line and the npm package, times both and the stages `runs` times, and writes the document.
+pub fn bench(log: &mut Log, runs: u32) -> Result<()> {
+    const REMEDY: &str = "correct what the compiler names above";
+    let manifest = Manifest::read()?;
+    page::build()?;
+    browser::set_up(log)?;
+    let build = "cargo build --release --package meshmark-cli --target-dir target";
+    log.run(&mut command(build), REMEDY)?;
+    if path(STAGES).exists() {
+        fs_err::remove_dir_all(path(STAGES))?;
     }
     let mut stages = command("cargo bench --bench pipeline --target-dir target");
-    stages.env("CRITERION_HOME", folder);
-    log.run(&mut stages, "correct what the compiler names above")
-}
+    log.run(stages.env("CRITERION_HOME", path(STAGES)), REMEDY)?;
 
-fn measure(log: &mut Log, manifest: &Manifest, runs: u32) -> Result<()> {
-    let rustc = output(&mut command("rustc --version"), "install Rust")?;
-    let wasm_rustc = output(
-        &mut toolchain::program("rustc", "--version")?,
-        "install Rust",
-    )?;
+    let rustc = "rustc --version";
     let mut node = command("node www/bench/bench.mjs --cli target/release/meshmark");
     node.env("MESHMARK_CHROMIUM", browser::chromium().unwrap_or_default())
         .args(["--runs", &runs.to_string(), "--stages", STAGES])
-        .args(["--native-rustc", &rustc, "--wasm-rustc", &wasm_rustc])
+        .args(["--native-rustc", &output(&mut command(rustc))?])
+        .args(["--wasm-rustc", &output(&mut toolchain::command(rustc)?)?])
         .args(["--output", "docs/PERFORMANCE.md"]);
     for module in &manifest.modules {
         node.arg("--module").arg(module.path());

@@ -2,23 +2,23 @@
 
 use std::path::PathBuf;
 
-use crate::process::{Log, Result, check, command, find};
+use anyhow::{Result, ensure};
+
+use crate::process::{Log, TO_DO, command, find};
 
 /// Finds both on PATH, or installs Debian's.
 pub fn set_up(log: &mut Log) -> Result<()> {
     const BY_HAND: &str = "put `chromium` and `chromedriver` on PATH, then run this again";
     let is_there = || chromium().is_some() && find("chromedriver").is_some();
     if !is_there() {
-        log.run(
-            &mut command("sh xtask/apt-install.sh chromium chromium-driver"),
-            BY_HAND,
-        )?;
+        let mut install = command("sh xtask/apt-install.sh chromium chromium-driver");
+        log.run(&mut install, BY_HAND)?;
     }
-    check(
+    ensure!(
         is_there(),
-        || "Chromium or its driver is not on PATH".to_owned(),
-        BY_HAND,
-    )
+        "Chromium or its driver is not on PATH\n{TO_DO}{BY_HAND}"
+    );
+    Ok(())
 }
 
 pub fn chromium() -> Option<PathBuf> {

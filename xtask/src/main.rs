@@ -2,23 +2,24 @@
 
 mod bench;
 mod browser;
+mod freshness;
 mod fuzz;
-mod lab;
 mod manifest;
 mod npm;
 mod page;
 mod process;
 mod serve;
-mod stamp;
 mod steps;
 mod test;
 mod toolchain;
-mod tools;
 mod wasm;
 
 use std::process::ExitCode;
+use std::str::FromStr;
 
-use process::Failure;
+use anyhow::{Context, Result};
+
+use process::{Log, command};
 
 const USAGE: &str = "\
 cargo xtask build                 the wasm modules, the npm package and the page
@@ -36,37 +37,38 @@ Each installs what it needs and is missing.";
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let number = |text: &str, range: std::ops::RangeInclusive<u32>| {
-        let number = text.parse().ok().filter(|number| range.contains(number));
-        number.ok_or_else(|| {
-            let remedy = format!(
-                "give a whole number from {} to {}",
-                range.start(),
-                range.end()
-            );
-            Failure::new(format!("`{text}` cannot be used"), remedy)
-        })
-    };
+    let log = &mut Log(None);
     let result = match arguments[..] {
         ["build"] => page::build(),
         ["serve"] => serve::serve(8080),
-        ["serve", "--port", port] => number(port, 0..=65535).and_then(serve::serve),
+        ["serve", "--port", port] => number(port).and_then(serve::serve),
         ["test"] => test::test(false),
         ["test", "--all"] => test::test(true),
-        ["fuzz"] => fuzz::fuzz(fuzz::SECONDS),
-        ["fuzz", "--seconds", seconds] => number(seconds, 1..=u32::MAX).and_then(fuzz::fuzz),
-        ["bench"] => bench::bench(9),
-        ["bench", "--runs", runs] => number(runs, 1..=u32::MAX).and_then(bench::bench),
-        ["lab", ref arguments @ ..] => lab::lab(arguments),
-        ["study", ref arguments @ ..] => lab::lab(&[&["--study"], arguments].concat()),
+        ["fuzz"] => fuzz::fuzz(log, fuzz::SECONDS),
+        ["fuzz", "--seconds", seconds] => number(seconds).and_then(|n| fuzz::fuzz(log, n)),
+        ["bench"] => bench::bench(log, 9),
+        ["bench", "--runs", runs] => number(runs).and_then(|runs| bench::bench(log, runs)),
+        ["lab", ref arguments @ ..] => lab(log, arguments),
+        ["study", ref arguments @ ..] => lab(log, &[&["--study"], arguments].concat()),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
         }
     };
-    if let Err(failure) = result {
-        eprintln!("\n{failure}");
+    if let Err(error) = result {
+        eprintln!("\nerror: {error:#}");
         return ExitCode::FAILURE;
     }
     ExitCode::SUCCESS
+}
+
+fn number<N: FromStr<Err = std::num::ParseIntError>>(text: &str) -> Result<N> {
+    let number = text.parse();
+    number.with_context(|| format!("`{text}` cannot be used: give a whole number in range"))
+}
+
+/// Starts the lab, which does all of it.
+fn lab(log: &mut Log, arguments: &[&str]) -> Result<()> {
+    let mut lab = command("cargo run --release --package meshmark-lab --");
+    log.run(lab.args(arguments), "see the error above")
 }

@@ -1,12 +1,11 @@
 //! wasm-pack.toml: how the wasm modules are packaged. What each key means is said there.
 
-use std::fs;
 use std::path::PathBuf;
 
+use anyhow::{Context, Result};
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 
-use crate::process::{Failure, Result, path};
+use crate::process::path;
 
 pub const FILE: &str = "wasm-pack.toml";
 
@@ -29,17 +28,16 @@ pub struct Module {
     pub gzip_budget_bytes: u64,
 }
 
+impl Manifest {
+    pub fn read() -> Result<Self> {
+        let text = fs_err::read_to_string(path(FILE))?;
+        toml::from_str(&text).with_context(|| format!("{FILE} cannot be used"))
+    }
+}
+
 impl Module {
     /// The module itself, of the files in its folder.
     pub fn path(&self) -> PathBuf {
         path(&self.out_dir).join(format!("{}_bg.wasm", self.name))
     }
-}
-
-/// Reads a TOML file in the workspace's root.
-pub fn read<T: DeserializeOwned>(file: &str) -> Result<T> {
-    let text =
-        fs::read_to_string(path(file)).map_err(|error| Failure::of_file(&path(file), &error))?;
-    toml::from_str(&text)
-        .map_err(|error| Failure::new(format!("{file}: {error}"), format!("correct {file}")))
 }

@@ -2,8 +2,10 @@
 
 use std::process::Command;
 
-use crate::process::{Log, Result, check, command, output, path, program_with};
-use crate::stamp::{Stamp, read};
+use anyhow::{Result, ensure};
+
+use crate::freshness::is_fresh;
+use crate::process::{Log, TO_DO, command, output, path};
 
 /// The versions of every npm package.
 pub const LOCK: &str = "www/package-lock.json";
@@ -11,24 +13,19 @@ pub const LOCK: &str = "www/package-lock.json";
 /// Installs what the lock file says, unless that is what is there.
 pub fn set_up(log: &mut Log) -> Result<()> {
     const REMEDY: &str = "install Node 20.19 or newer, with npm, then run this again"; // what Vite asks for
-    let node = output(&mut command("node --version"), REMEDY)?;
+    let node = output(&mut command("node --version"))?;
     let numbers = node.trim_start_matches('v').split('.');
     let version: Vec<u32> = numbers.map_while(|number| number.parse().ok()).collect();
-    let too_old = || format!("Node {node} is too old");
-    check(version >= vec![20, 19], too_old, REMEDY)?;
-    let stamp = Stamp::new(
-        path("www/node_modules/.stamp"),
-        &[&read(&path(LOCK))?[..], node.as_bytes()],
+    ensure!(
+        version >= vec![20, 19],
+        "Node {node} is too old\n{TO_DO}{REMEDY}"
     );
-    if stamp.is_fresh() {
-        log.say(format_args!("npm packages are as in {LOCK}"));
+    // npm's own note of what it installed, written last.
+    if is_fresh(&path("www/node_modules/.package-lock.json"), &[path(LOCK)])? {
         return Ok(());
     }
-    log.run(
-        &mut npm("ci --no-audit --no-fund"),
-        "see what npm names above, then run this again",
-    )?;
-    stamp.write()
+    let remedy = "see what npm names above, then run this again";
+    log.run(&mut npm("ci --no-audit --no-fund"), remedy)
 }
 
 /// `npm ARGUMENTS` in the workspace.
@@ -40,5 +37,7 @@ pub fn npm(arguments: &str) -> Command {
 
 /// A program that an npm package brought.
 pub fn program(name: &str, arguments: &str) -> Command {
-    program_with(path("www/node_modules/.bin").join(name), arguments)
+    let mut program = Command::new(path("www/node_modules/.bin").join(name));
+    program.args(arguments.split_whitespace());
+    program
 }

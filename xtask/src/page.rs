@@ -1,10 +1,11 @@
 //! The built page: the npm package's and the app's dist folders.
 
-use std::fs;
+use anyhow::Result;
+use fs_err as fs;
 
-use crate::manifest::{self, Manifest, Module};
-use crate::process::{Failure, Log, Result, path};
-use crate::stamp::Stamp;
+use crate::freshness::is_fresh;
+use crate::manifest::{Manifest, Module};
+use crate::process::{Log, path};
 use crate::steps::Steps;
 use crate::{npm, wasm};
 
@@ -12,11 +13,11 @@ const REMEDY: &str = "correct what the build names above";
 
 /// Builds the modules, the package and the page.
 pub fn build() -> Result<()> {
-    let manifest = manifest::read(manifest::FILE)?;
+    let manifest = Manifest::read()?;
     let mut steps = Steps::default();
     wasm::add_set_up(&mut steps, &[]);
     add(&mut steps, &manifest);
-    steps.run_beside_each_other()
+    steps.run()
 }
 
 /// Adds the steps that make the modules and, of them, the package and the page.
@@ -26,15 +27,13 @@ pub fn add<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     steps.add("page", &packaged, make);
 }
 
-/// Builds both, unless they are what the last build left and their sources are too.
+/// Builds both where a source or a module is newer.
 fn make(log: &mut Log) -> Result<()> {
-    let mut folders = ["www/meshmark/dist", "www/app/dist"].iter();
-    if folders.all(|dist| path(dist).is_dir()) && stamp()?.is_fresh() {
-        log.say("www/app/dist is as it was");
+    // The package is built first.
+    if is_fresh(&path("www/app/dist/index.html"), &[path("www")])? {
         return Ok(());
     }
-    log.run(&mut npm::npm("run build"), REMEDY)?;
-    stamp()?.write()
+    log.run(&mut npm::npm("run build"), REMEDY)
 }
 
 /// Builds the page before `missing` modules are there. Whoever asks one of them is told so.
@@ -49,11 +48,8 @@ export default () =>
 "#;
     for module in missing {
         let folder = path(&module.out_dir);
-        let write = || {
-            fs::create_dir_all(&folder)?;
-            fs::write(folder.join(format!("{}.js", module.name)), STAND_IN)
-        };
-        write().map_err(|error| Failure::of_file(&folder, &error))?;
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join(format!("{}.js", module.name)), STAND_IN)?;
     }
     log.run(&mut npm::npm("run build --workspace meshmark"), REMEDY)?;
     // The types of what is missing are missing too, so there is no check of types; and no service worker may keep this page.
@@ -61,9 +57,4 @@ export default () =>
     vite.current_dir(path("www/app"))
         .env("NODE_ENV", "development");
     log.run(&mut vite, REMEDY)
-}
-
-/// Of every source and every built file.
-fn stamp() -> Result<Stamp> {
-    Stamp::of_files(path("target/page.stamp"), &["www"], "")
 }

@@ -3,15 +3,17 @@
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-use crate::manifest::{self, Manifest, Module};
-use crate::process::{Failure, Result, path};
+use anyhow::{Result, bail};
+
+use crate::manifest::{Manifest, Module};
+use crate::process::path;
 use crate::steps::Steps;
 use crate::{npm, page, wasm};
 
 /// Builds the page and serves it, at `port` or the next free one, until stopped. The first time the page is there with its first
 /// module, that of marking and checking; the others are built behind it.
-pub fn serve(port: u32) -> Result<()> {
-    let manifest: Manifest = manifest::read(manifest::FILE)?;
+pub fn serve(port: u16) -> Result<()> {
+    let manifest = Manifest::read()?;
     let missing = |module: &&Module| !module.path().is_file();
     let others: Vec<&Module> = manifest.modules.iter().skip(1).filter(missing).collect();
     if others.is_empty() {
@@ -24,23 +26,14 @@ pub fn serve(port: u32) -> Result<()> {
         steps.add("page without the other modules", &after, |log| {
             page::make_early(log, &others)
         });
-        steps.run_beside_each_other()?;
-        build_behind()
-            .map_err(|error| Failure::new(format!("xtask: {error}"), "run this again"))?;
+        steps.run()?;
+        // Goes on beside the server.
+        Command::new(std::env::current_exe()?)
+            .arg("build")
+            .spawn()?;
     }
     let mut server = npm::program("vite", "preview --host 127.0.0.1 --port");
     server.arg(port.to_string()).current_dir(path("www/app"));
     let error = server.exec(); // takes this process's place, so that a signal reaches the server itself
-    Err(Failure::new(
-        format!("vite cannot be started: {error}"),
-        "remove www/node_modules, then run this again",
-    ))
-}
-
-/// Starts `cargo xtask build`, which goes on beside the server.
-fn build_behind() -> std::io::Result<()> {
-    Command::new(std::env::current_exe()?)
-        .arg("build")
-        .spawn()
-        .map(drop)
+    bail!("vite cannot be started: {error}")
 }

@@ -1,20 +1,22 @@
 //! The wasm modules: compiled, bound, optimised, weighed.
 
-use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
+use anyhow::{Context, Result, ensure};
+use fs_err as fs;
+
+use crate::freshness::is_fresh;
 use crate::manifest::{self, Manifest, Module};
-use crate::process::{Failure, Log, Result, check, command, output, path, program_with};
-use crate::stamp::{Stamp, read};
+use crate::npm;
+use crate::process::{self, Log, TO_DO, output, path};
 use crate::steps::Steps;
 use crate::toolchain::{self, TARGET, TARGET_DIR};
-use crate::{npm, tools};
 
 /// Adds the steps that set up what wasm takes.
 pub fn add_set_up(steps: &mut Steps, after: &[&str]) {
-    steps.add("wasm compiler", after, toolchain::set_up);
-    steps.add("wasm-bindgen tools", after, tools::set_up);
+    steps.add("wasm compiler", after, toolchain::set_up_compiler);
+    steps.add("wasm-bindgen tools", after, toolchain::set_up_tools);
     steps.add("npm packages", after, npm::set_up);
 }
 
@@ -43,32 +45,31 @@ pub fn add_modules<'a>(
     last
 }
 
+/// A command by its words for wasm, with the flags that modules are built with.
+pub fn command(manifest: &Manifest, words: &str) -> Result<Command> {
+    let mut command = toolchain::command(words)?;
+    let flags: Vec<&str> = manifest.rust_flags.split_whitespace().collect();
+    command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"));
+    Ok(command)
+}
+
 /// Compiles a module where anything changed. Cargo gives the library the same name whatever its features, and takes one module for
 /// another that has changed: so it is not asked where nothing did.
 fn compile_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result<()> {
     let kept = compiled_file(module);
-    let rustc = output(&mut toolchain::program("rustc", "-vV")?, "install Rust")?;
     let sources = ["src", "Cargo.toml", "Cargo.lock", manifest::FILE];
-    let stamp = Stamp::of_files(kept.with_extension("sources"), &sources, &rustc)?;
-    if stamp.is_fresh() && kept.is_file() {
-        log.say(format_args!("{} is as it was", kept.display()));
+    if is_fresh(&kept, &sources.map(path))? {
         return Ok(());
     }
-    let build = "rustc --release --lib --crate-type cdylib --no-default-features --features";
-    let mut build = cargo(manifest, &format!("{build} {}", module.feature))?;
+    let build = "cargo rustc --release --lib --crate-type cdylib --no-default-features --features";
+    let mut build = command(manifest, &format!("{build} {}", module.feature))?;
     build.env("CARGO_TARGET_DIR", modules_dir());
     log.run(&mut build, "correct what the compiler names above")?;
-    let compiled = modules_dir().join(format!("{TARGET}/release/meshmark.wasm"));
-    fs::copy(&compiled, &kept).map_err(|error| Failure::of_file(&kept, &error))?;
-    stamp.write()
-}
-
-/// `cargo ARGUMENTS` for wasm, with the flags that modules are built with.
-pub fn cargo(manifest: &Manifest, arguments: &str) -> Result<Command> {
-    let mut command = toolchain::cargo(arguments)?;
-    let flags: Vec<&str> = manifest.rust_flags.split_whitespace().collect();
-    command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"));
-    Ok(command)
+    fs::copy(
+        modules_dir().join(format!("{TARGET}/release/meshmark.wasm")),
+        &kept,
+    )?;
+    Ok(())
 }
 
 /// Where modules are compiled: beside the wasm tests, which use a folder at the same time.
@@ -81,43 +82,28 @@ fn compiled_file(module: &Module) -> PathBuf {
     modules_dir().join(format!("{}.wasm", module.feature))
 }
 
-/// Binds and optimises a module where anything changed, and weighs it.
+/// Binds and optimises a module where anything changed, and weighs it. The module itself comes last: what was interrupted is made
+/// again.
 fn package_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result<()> {
-    let compiled = compiled_file(module);
-    let packaged = module.path();
-    // The versions of wasm-bindgen and wasm-opt are in the compiled module and in npm's lock file.
-    let inputs = [
-        read(&compiled)?,
-        read(&path(manifest::FILE))?,
-        read(&path(npm::LOCK))?,
-    ];
-    let stamp = Stamp::new(compiled.with_extension("stamp"), &inputs);
-    if stamp.is_fresh() && packaged.is_file() {
-        log.say(format_args!("{} is as it was", packaged.display()));
-        return weigh(log, module);
+    let (compiled, packaged) = (compiled_file(module), module.path());
+    let sources = [compiled.clone(), path(manifest::FILE), path(npm::LOCK)];
+    if !is_fresh(&packaged, &sources)? {
+        let out_dir = path(&module.out_dir);
+        if out_dir.exists() {
+            fs::remove_dir_all(&out_dir)?;
+        }
+        let mut bind = Command::new(toolchain::tool("wasm-bindgen"));
+        bind.args(["--target", &manifest.target, "--out-name", &module.name])
+            .arg("--out-dir")
+            .args([&out_dir, &compiled]);
+        let remedy = "see that Cargo.toml pins wasm-bindgen to the version in Cargo.lock";
+        log.run(&mut bind, remedy)?;
+        let bound = compiled.with_extension("bound");
+        fs::rename(&packaged, &bound)?;
+        let mut optimise = npm::program("wasm-opt", &manifest.wasm_opt_flags);
+        optimise.arg(bound).arg("--output").arg(packaged);
+        log.run(&mut optimise, "see wasm-opt-flags in wasm-pack.toml")?;
     }
-    let out_dir = path(&module.out_dir);
-    if out_dir.exists() {
-        fs::remove_dir_all(&out_dir).map_err(|error| Failure::of_file(&out_dir, &error))?;
-    }
-    let names = format!(
-        "--target {} --out-name {} --out-dir",
-        manifest.target, module.name
-    );
-    log.run(
-        program_with(tools::folder().join("wasm-bindgen"), &names)
-            .arg(out_dir)
-            .arg(compiled),
-        "see that Cargo.toml pins wasm-bindgen to the version in Cargo.lock",
-    )?;
-    log.run(
-        npm::program("wasm-opt", &manifest.wasm_opt_flags)
-            .arg(&packaged)
-            .arg("--output")
-            .arg(&packaged),
-        "see wasm-opt-flags in wasm-pack.toml",
-    )?;
-    stamp.write()?;
     weigh(log, module)
 }
 
@@ -125,21 +111,19 @@ fn package_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result
 fn weigh(log: &mut Log, module: &Module) -> Result<()> {
     const SIZES: &str = "const bytes = fs.readFileSync(process.argv[1]); console.log(
         bytes.length, zlib.gzipSync(bytes, { level: 9 }).length, zlib.brotliCompressSync(bytes).length)";
-    let mut node = command("node --eval");
-    let sizes = output(node.arg(SIZES).arg(module.path()), "see that Node runs")?;
+    let mut node = process::command("node --eval");
+    let sizes = output(node.arg(SIZES).arg(module.path()))?;
     let (name, budget) = (&module.name, module.gzip_budget_bytes);
     log.say(format_args!(
         "{name}: bytes, by gzip, by brotli: {sizes} (budget by gzip: {budget})"
     ));
-    let gzip = sizes.split(' ').nth(1).and_then(|size| size.parse().ok());
-    let gzip: u64 =
-        gzip.ok_or_else(|| Failure::new(format!("node printed {sizes}"), "see that Node runs"))?;
-    let what = || {
-        format!(
-            "{name} is {} bytes over its budget of {budget} by gzip",
-            gzip - budget
-        )
-    };
-    let remedy = "make it smaller, or raise gzip-budget-bytes in wasm-pack.toml and say why";
-    check(gzip <= budget, what, remedy)
+    let gzip = sizes.split(' ').nth(1).context("node printed no size")?;
+    let over = gzip.parse::<u64>()?.saturating_sub(budget);
+    ensure!(
+        over == 0,
+        "{name} is {over} bytes over its budget of {budget} by gzip\n\
+         {TO_DO}make it smaller, or raise gzip-budget-bytes in {} and say why",
+        manifest::FILE
+    );
+    Ok(())
 }

@@ -1,6 +1,7 @@
 import { createHash } from "node:crypto";
 import { readFile, readdir, writeFile } from "node:fs/promises";
 import { join, relative, sep } from "node:path";
+import { fileURLToPath } from "node:url";
 import { defineConfig, type Plugin } from "vite";
 import { CONTENT_SECURITY_POLICY } from "./csp.ts";
 
@@ -26,14 +27,23 @@ function securityHeaders(): Plugin {
   };
 }
 
+/** In the mode `early`, words in the place of the modules that come later: the page is there with its first one. */
+function standIns(): Plugin {
+  let isEarly = false;
+  return {
+    name: "stand-ins",
+    enforce: "pre", // before Vite looks for the file
+    config: (_, { mode }) => void (isEarly = mode === "early"),
+    resolveId: (source) => (isEarly && /\/(study|attacks)-wasm\//.test(source) ? fileURLToPath(new URL("src/building.ts", import.meta.url)) : null),
+  };
+}
+
 /** `sw.js` with the list of the build's files and a version that changes with any of them. */
 function serviceWorker(): Plugin {
-  let outDir = "";
   return {
     name: "service-worker",
     apply: "build",
-    configResolved: (config) => void (outDir = join(config.root, config.build.outDir)),
-    async closeBundle() {
+    async writeBundle({ dir: outDir = "" }) {
       const entries = await readdir(outDir, { recursive: true, withFileTypes: true });
       const paths = entries.filter((entry) => entry.isFile() && entry.name !== "_headers").map((entry) => join(entry.parentPath, entry.name));
       const hash = createHash("sha256");
@@ -52,12 +62,12 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   base: "./", // can be hosted under any path
   appType: "mpa", // a missing file is a 404, not the page
-  plugins: [securityHeaders(), serviceWorker()],
+  plugins: [standIns(), securityHeaders(), serviceWorker()],
   build: {
     target: "es2022",
     assetsInlineLimit: 0, // data: URIs would need holes in the policy
     chunkSizeWarningLimit: 800, // three.js, loaded with the first model
   },
-  worker: { format: "es" },
+  worker: { format: "es", plugins: () => [standIns()] },
   preview: { headers: HEADERS },
 });

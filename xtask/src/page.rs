@@ -1,10 +1,9 @@
 //! The built page: the npm package's and the app's dist folders.
 
 use anyhow::Result;
-use fs_err as fs;
 
 use crate::freshness::is_fresh;
-use crate::manifest::{Manifest, Module};
+use crate::manifest::Manifest;
 use crate::process::{Log, path};
 use crate::steps::Steps;
 use crate::{npm, wasm};
@@ -36,25 +35,7 @@ fn make(log: &mut Log) -> Result<()> {
     log.run(&mut npm::npm("run build"), REMEDY)
 }
 
-/// Builds the page before `missing` modules are there. Whoever asks one of them is told so.
-pub fn make_early(log: &mut Log, missing: &[&Module]) -> Result<()> {
-    const STAND_IN: &str = r#"// Stands in for a module until `cargo xtask serve` has built it.
-export default () =>
-  Promise.reject({
-    code: "module.building",
-    message: "This part of the page is still being built: see the terminal. Load the page again when it is done.",
-    path: null,
-  });
-"#;
-    for module in missing {
-        let folder = path(&module.out_dir);
-        fs::create_dir_all(&folder)?;
-        fs::write(folder.join(format!("{}.js", module.name)), STAND_IN)?;
-    }
-    log.run(&mut npm::npm("run build --workspace meshmark"), REMEDY)?;
-    // The types of what is missing are missing too, so there is no check of types; and no service worker may keep this page.
-    let mut vite = npm::program("vite", "build");
-    vite.current_dir(path("www/app"))
-        .env("NODE_ENV", "development");
-    log.run(&mut vite, REMEDY)
+/// Builds the page before its other modules are there. Whoever asks for one of them is told so.
+pub fn make_early(log: &mut Log) -> Result<()> {
+    log.run(&mut npm::npm("run build:early"), REMEDY)
 }

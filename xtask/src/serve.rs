@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Result, bail};
 
-use crate::manifest::{Manifest, Module};
+use crate::manifest::Manifest;
 use crate::process::path;
 use crate::steps::Steps;
 use crate::{npm, page, wasm};
@@ -14,18 +14,15 @@ use crate::{npm, page, wasm};
 /// module, that of marking and checking; the others are built behind it.
 pub fn serve(port: u16) -> Result<()> {
     let manifest = Manifest::read()?;
-    let missing = |module: &&Module| !module.path().is_file();
-    let others: Vec<&Module> = manifest.modules.iter().skip(1).filter(missing).collect();
-    if others.is_empty() {
+    let (first, others) = manifest.modules.split_at(1);
+    if others.iter().all(|module| module.path().is_file()) {
         page::build()?;
     } else {
         let mut steps = Steps::default();
         wasm::add_set_up(&mut steps, &[]);
-        let packaged = wasm::add_modules(&mut steps, &manifest, &manifest.modules[..1]);
+        let packaged = wasm::add_modules(&mut steps, &manifest, first);
         let after: Vec<&str> = packaged.iter().map(String::as_str).collect();
-        steps.add("page without the other modules", &after, |log| {
-            page::make_early(log, &others)
-        });
+        steps.add("page without the other modules", &after, page::make_early);
         steps.run()?;
         // Goes on beside the server.
         Command::new(std::env::current_exe()?)

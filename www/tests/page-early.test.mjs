@@ -1,0 +1,30 @@
+// The page that is there before its other modules.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { launch, serve } from "./browser.mjs";
+
+const app = new URL("../app", import.meta.url);
+
+test("the page is built before the study and the attacks are, and says so where one is asked for", async () => {
+  const outDir = mkdtempSync(join(tmpdir(), "meshmark-early-"));
+  execFileSync("npm", ["run", "build:early", "--", "--outDir", outDir, "--emptyOutDir"], { cwd: fileURLToPath(app) });
+  const server = await serve(app, { build: { outDir } });
+  const browser = await launch();
+  try {
+    const page = await browser.newPage();
+    await page.goto(server.origin);
+    await page.getByRole("button", { name: "Try the demo model" }).click();
+    await page.getByRole("tab", { name: "Study" }).click();
+    await page.getByRole("tabpanel").getByText("still being built").waitFor();
+    assert.equal(await page.evaluate(async () => (await navigator.serviceWorker.getRegistrations()).length), 0, "a service worker keeps this page");
+  } finally {
+    await browser.close();
+    await server.close();
+    rmSync(outDir, { recursive: true });
+  }
+});

@@ -88,7 +88,7 @@ impl Carrier {
         progress: &mut dyn Progress,
     ) -> Result<Reading, Cancelled> {
         match self {
-            Carrier::Solid => solid::Surfaces::new(mesh).read(key, progress),
+            Carrier::Solid => solid::Suspect::new(mesh).read(key, progress),
             Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
         }
     }
@@ -104,12 +104,12 @@ impl Carrier {
     ) -> Result<Reading, Cancelled> {
         match self {
             Carrier::Solid => {
-                let surfaces = solid::Surfaces::new(copy).facing(&host.0);
-                let surfaces = match is_smoothed {
+                let suspect = solid::Suspect::copied(copy, &host.surfaces, host.in_pieces);
+                let suspect = suspect.with(|surfaces| match is_smoothed {
                     true => surfaces.first_kind(),
                     false => surfaces.plain(),
-                };
-                surfaces.read(key, progress)
+                });
+                suspect.read(key, progress)
             }
             Carrier::Ring => self.read(copy, key, progress),
         }
@@ -196,11 +196,19 @@ impl Measurement {
 }
 
 /// An unmarked host that is at hand when its copies are read.
-pub(crate) struct KnownHost(solid::Surfaces);
+pub(crate) struct KnownHost {
+    surfaces: solid::Surfaces,
+    in_pieces: bool,
+}
 
 impl KnownHost {
-    pub(crate) fn new(host: &Mesh) -> KnownHost {
-        KnownHost(solid::Surfaces::new(host))
+    /// `in_pieces`: whether its pieces were marked, each in its own frame.
+    pub(crate) fn new(host: &Mesh, in_pieces: bool) -> KnownHost {
+        let surfaces = solid::Surfaces::new(host);
+        KnownHost {
+            surfaces,
+            in_pieces,
+        }
     }
 }
 

@@ -31,4 +31,6 @@ pub struct Hypothesis {
     /// What this way of reading is charged: the logarithm of the inverse of its share in the probability of a false alarm.
     /// The shares of all ways that were declared before any key was known add up to 1 at most.
     pub ln_num_tests: f64,
+    /// Which piece of the suspect is read: 0 is the whole, 1 the first of those that are read alone.
+    pub piece: usize,
 }

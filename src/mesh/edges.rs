@@ -1,6 +1,6 @@
 //! Edges of a triangle soup, sorted: the equivalent of half-edges that accepts edges with any number of faces.
 
-use super::Mesh;
+use super::{Mesh, Sets};
 
 /// One side of a triangle.
 #[derive(Clone, Copy, Default)]
@@ -97,21 +97,16 @@ impl Edges {
 
     /// For each face the number of its component: those of the faces that are joined by edges, counted from the first face on.
     pub fn components(&self) -> Vec<u32> {
-        let mut parents: Vec<u32> = (0..self.num_faces as u32).collect();
+        let mut sets = Sets::new(self.num_faces);
         for sides in self.edges() {
             for pair in sides.windows(2) {
-                let (a, b) = (
-                    find(&mut parents, pair[0].face()),
-                    find(&mut parents, pair[1].face()),
-                );
-                // To the lower one, which so comes first below.
-                parents[a.max(b) as usize] = a.min(b);
+                sets.join(pair[0].face(), pair[1].face());
             }
         }
         let mut labels = vec![0; self.num_faces];
         let mut next = 0;
         for face in 0..self.num_faces as u32 {
-            let root = find(&mut parents, face);
+            let root = sets.find(face); // the lowest, which so came first
             if root == face {
                 labels[face as usize] = next;
                 next += 1;
@@ -251,15 +246,6 @@ impl Edges {
             closed,
         }
     }
-}
-
-fn find(parents: &mut [u32], mut face: u32) -> u32 {
-    while parents[face as usize] != face {
-        let grandparent = parents[parents[face as usize] as usize];
-        parents[face as usize] = grandparent;
-        face = grandparent;
-    }
-    face
 }
 
 /// An edge with two faces.

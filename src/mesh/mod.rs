@@ -3,10 +3,12 @@
 
 mod admissible;
 mod edges;
+mod sets;
 pub mod shapes;
 
 pub use admissible::{Admissible, Orbit};
 pub use edges::{Edges, Pair, Rings, Winding};
+pub(crate) use sets::Sets;
 
 use glam::DVec3;
 use std::collections::BTreeMap;

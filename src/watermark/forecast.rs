@@ -1,7 +1,7 @@
 //! What a mark is likely to survive: tried on the marked model itself.
 
 use super::judge::Judge;
-use super::report::{Extraction, Forecast, Input, Level, Verdict};
+use super::report::{CarrierReading, Extraction, Forecast, Input, Level, Verdict};
 use crate::attack::{Attack, CROP, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, KnownHost};
@@ -37,7 +37,9 @@ pub(super) fn forecast(
     payload: Payload,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Forecast>, Cancelled> {
-    let host = KnownHost::new(host);
+    let is_in_piece = |carrier: &CarrierReading| carrier.piece.is_some();
+    let in_pieces = read_back.details().carriers.iter().any(is_in_piece);
+    let host = KnownHost::new(host, in_pieces);
     let judge = Judge::new(key, None, Input::Model);
     let forecast = |attack, found: &Extraction| Forecast {
         attack,

@@ -38,6 +38,8 @@ struct Candidate {
     all: Statistic,
     /// Bound, all choices within the carrier charged.
     ln_p: f64,
+    /// Which piece of the suspect it was read in.
+    piece: usize,
 }
 
 /// Logarithm of the number of payloads.
@@ -125,12 +127,14 @@ impl Judge {
             .as_ref()
             .filter(|_| union(ln_p_payload, LN_CARRIERS) <= LN_P_FOUND);
         let payload = named.map(|candidate| candidate.payload);
+        let piece = named.map(|candidate| candidate.piece);
         Heard {
             report: CarrierReading {
                 name,
                 ln_p: pilots.min(ln_p_payload),
                 tag: payload.and_then(Payload::tag),
                 number: payload.map(Payload::number),
+                piece: piece.filter(|&piece| piece > 0),
                 agreement: candidate.map_or(0.0, |candidate| candidate.all.agreement()),
                 addresses: reading.num_addresses,
                 owned_addresses: hypotheses
@@ -191,6 +195,7 @@ impl Judge {
             payload,
             all,
             ln_p: union(all.ln_p() + self.ln_guesses(), charge),
+            piece: hypothesis.piece,
         })
     }
 
@@ -216,6 +221,7 @@ impl Judge {
             payload,
             all: against(&hypothesis.symbols, |symbol| codeword.sign(symbol)),
             ln_p,
+            piece: hypothesis.piece,
         })
     }
 }
@@ -295,3 +301,6 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
         shows_details: verdict == Verdict::Found,
     }
 }
+
+#[cfg(test)]
+mod tests;

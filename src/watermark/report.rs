@@ -46,6 +46,9 @@ pub struct CarrierReading {
     pub tag: Option<String>,
     /// The payload as a number.
     pub number: Option<u64>,
+    /// Which piece of the model it was read in, alone, where it was not the whole: 1 is the first. Objects come before their parts, and
+    /// what has more triangles before what has fewer.
+    pub piece: Option<usize>,
     /// Weighted agreement of the symbols with that payload: 1 is perfect, 0 is chance.
     pub agreement: f64,
     /// Distinct addresses that were there to be read.

@@ -113,6 +113,7 @@ impl Measurement {
         let read = |sums: &Vec<Sum>| Hypothesis {
             symbols: sums.iter().filter_map(|sum| sum.read(&ownership)).collect(),
             ln_num_tests: libm::log(self.sums.len() as f64),
+            piece: 0,
         };
         let hypotheses: Vec<Hypothesis> = self.sums.iter().map(read).collect();
         Reading {

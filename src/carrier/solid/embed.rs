@@ -37,8 +37,8 @@ const NEEDED_EXPONENT: f64 = 125.0;
 const ENOUGH: f64 = 150.0;
 const STEPS_TRIED: usize = 4;
 
-/// The displacement of all V vertices that gives the host the mark.
-pub fn embed(
+/// The displacement of all V vertices that gives the host the mark, in its own frame.
+pub fn embed_in_frame(
     host: &Host,
     mark: &Mark,
     progress: &mut dyn Progress,

@@ -1,15 +1,20 @@
 //! What SOLID measures of a suspect without a key, and what a key reads in it: at once, or as it is measured.
 
+use super::lattice::Lattice;
 use super::reading::read;
 use super::surface::{Origin, Surface};
 use super::surfaces::Surfaces;
 use crate::carrier::{Reading, StoredError, possible};
+use crate::geometry::{Piece, Pieces};
 use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress};
 use std::borrow::Cow;
 
-/// Key-free measurement of a mesh: all its surfaces.
+/// Pieces that are read alone, at most: objects first, then parts, those of most triangles.
+const MOST_PIECES: usize = 16;
+
+/// Key-free measurement of a mesh: all its surfaces, then those of each of its pieces. Each begins with what it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     surfaces: Vec<Surface>,
@@ -18,12 +23,19 @@ pub struct Measurement {
 impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {
-        Surfaces::new(mesh).collect()
+        Suspect::new(mesh).0.into_iter().flatten().collect()
     }
 
     /// The soft symbols of a key.
     pub fn read(&self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
-        read(&mut self.surfaces.iter().map(Cow::Borrowed), key, progress)
+        let pieces = self.pieces().map(|piece| piece.iter().map(Cow::Borrowed));
+        read(pieces.collect(), || Lattice::of(key), progress)
+    }
+
+    /// The surfaces of the whole, and of each piece.
+    fn pieces(&self) -> impl Iterator<Item = &[Surface]> {
+        let is_of_piece = |_: &Surface, next: &Surface| next.origin != Origin::Suspect;
+        self.surfaces.chunk_by(is_of_piece)
     }
 
     /// The measurement as bytes: its surfaces one after the other.
@@ -51,11 +63,18 @@ impl Measurement {
             surfaces.first().is_none_or(is_first),
             "surfaces without the suspect's own",
         )?;
+        let measurement = Measurement { surfaces };
         possible(
-            surfaces.windows(2).all(in_order),
+            measurement
+                .pieces()
+                .all(|piece| piece.windows(2).all(in_order)),
             "surfaces out of order or twice",
         )?;
-        Ok(Measurement { surfaces })
+        possible(
+            measurement.pieces().count() <= 1 + MOST_PIECES,
+            "more pieces than are looked for",
+        )?;
+        Ok(measurement)
     }
 }
 
@@ -68,9 +87,49 @@ impl FromIterator<Surface> for Measurement {
     }
 }
 
-impl Surfaces {
+/// A suspect that is measured as it is read: as a whole, and each of its pieces alone.
+pub struct Suspect(Vec<Surfaces>);
+
+impl Suspect {
+    /// Prepares a mesh.
+    pub fn new(mesh: &Mesh) -> Suspect {
+        let whole = std::iter::once(Surfaces::new(mesh));
+        Suspect::of(whole.chain(pieces_of(mesh)))
+    }
+
+    /// The same, for a mesh that nobody has turned since it was marked (see [`Surfaces::facing`]), as a whole or in pieces. What the
+    /// axes of pieces were is not known.
+    pub fn copied(mesh: &Mesh, unmarked: &Surfaces, in_pieces: bool) -> Suspect {
+        match in_pieces {
+            true => Suspect::new(mesh),
+            false => Suspect::of(std::iter::once(Surfaces::new(mesh).facing(unmarked))),
+        }
+    }
+
+    fn of(pieces: impl Iterator<Item = Surfaces>) -> Suspect {
+        Suspect(pieces.filter(|surfaces| !surfaces.is_empty()).collect())
+    }
+
+    /// The same, with surfaces of each piece that `change` makes of them.
+    pub fn with(self, change: impl Fn(Surfaces) -> Surfaces) -> Suspect {
+        Suspect(self.0.into_iter().map(change).collect())
+    }
+
     /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark.
     pub fn read(self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
-        read(&mut self.map(Cow::Owned), key, progress)
+        let pieces = self.0.into_iter().map(|surfaces| surfaces.map(Cow::Owned));
+        read(pieces.collect(), || Lattice::of(key), progress)
     }
+}
+
+/// What is read alone of a mesh.
+fn pieces_of(mesh: &Mesh) -> impl Iterator<Item = Surfaces> {
+    let Pieces { objects, parts } = Pieces::of(mesh);
+    let of = |piece: Piece| Surfaces::new(&mesh.part(piece));
+    // A part is read alone for the sake of what was put beside it, and that smooths nothing.
+    let of_part = move |part| of(part).plain();
+    let objects = objects.into_iter().map(of);
+    objects
+        .chain(parts.into_iter().map(of_part))
+        .take(MOST_PIECES)
 }

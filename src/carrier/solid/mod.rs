@@ -16,6 +16,7 @@
 //! | `freedom` | embedding: how far each vertex may move unseen |
 //! | `lists`, `moments`, `problem` | embedding: the linear problem of one round |
 //! | `embed` | embedding: the displacement |
+//! | `objects` | embedding: each object of a scene in its own frame |
 //! | `store` | a surface's clusters in few bytes |
 //! | `strength` | smoothings that may have happened, and what lies between those that are undone |
 //! | `surface`, `surfaces` | detecting: what a suspect is, and may have been |
@@ -37,6 +38,7 @@ mod lattice;
 mod lists;
 mod measurement;
 mod moments;
+mod objects;
 mod pitch;
 mod problem;
 mod quantizer;
@@ -50,8 +52,9 @@ mod surface;
 mod surfaces;
 mod window;
 
-pub use embed::{NEEDED_WINDOWS, embed};
-pub use measurement::Measurement;
+pub use embed::NEEDED_WINDOWS;
+pub use measurement::{Measurement, Suspect};
+pub use objects::embed;
 pub use surface::Surface;
 pub use surfaces::Surfaces;
 pub use window::num_windows;

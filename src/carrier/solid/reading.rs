@@ -2,7 +2,8 @@
 //!
 //! Three kinds of tests share the probability of a false alarm in equal parts, each charged for its own number: the suspect
 //! as it is, in all turns of its frame; the surfaces that undo what may have been done to it; and the symbols that are no
-//! pilots, where the pilots agree best after a search of which they know nothing (docs/SECURITY.md).
+//! pilots, where the pilots agree best after a search of which they know nothing (docs/SECURITY.md). A suspect of several pieces is
+//! read as a whole, and each piece alone, as if it were all that there is.
 
 use super::lattice::Lattice;
 use super::pitch::MOST_PITCHES;
@@ -14,30 +15,65 @@ use super::surface::Surface;
 use super::window::{Window, windows};
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
-use crate::key::Key;
-use crate::progress::{Cancelled, Progress};
+use crate::progress::{Cancelled, Progress, Stage, step};
 use std::borrow::Cow;
 
 /// Kinds of tests.
 const KINDS: usize = 3;
 
-/// Reads surfaces with a key, in their order, until it is sure.
+/// Pieces that are scanned, the whole being the first: a scan takes as long for a small one as for a large one.
+const SCANNED: usize = 2;
+
+/// Reads the surfaces of a suspect with a key, and those of each of its pieces alone, until it is sure of one.
+///
+/// All are looked at as they are before anything is undone: a marked model is mostly found in that.
 pub fn read<'a>(
-    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
-    key: &Key,
+    pieces: Vec<impl Iterator<Item = Cow<'a, Surface>>>,
+    lattice: impl Fn() -> Lattice,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
-    read_at(surfaces, Lattice::of(key), progress)
+    let num_pieces = pieces.len();
+    let mut begun = Vec::new();
+    for (number, mut surfaces) in pieces.into_iter().enumerate() {
+        step(progress, Stage::Test, 0.0)?;
+        if let Some(suspect) = surfaces.next() {
+            let search = Search::new(lattice(), suspect);
+            if search.is_sure() {
+                return Ok(search.conclude().of_piece(number, num_pieces));
+            }
+            begun.push((number, search, surfaces));
+        }
+    }
+    let mut all = Reading::default();
+    for (number, mut search, mut surfaces) in begun {
+        let mut report =
+            |stage, part| progress.report(stage, (number as f64 + part) / num_pieces as f64);
+        search.go_on(&mut surfaces, number < SCANNED, &mut report)?;
+        let reading = search.conclude().of_piece(number, num_pieces);
+        if search.is_sure() {
+            return Ok(reading);
+        }
+        all.num_addresses = all.num_addresses.max(reading.num_addresses);
+        all.hypotheses.extend(reading.hypotheses);
+    }
+    Ok(all)
 }
 
-/// The same with the lattice of a key.
-fn read_at<'a>(
-    surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
-    lattice: Lattice,
-    progress: &mut dyn Progress,
-) -> Result<Reading, Cancelled> {
-    let search = Search::of(surfaces, lattice, progress)?;
-    Ok(search.map_or_else(Reading::default, |search| search.conclude()))
+impl Reading {
+    /// The reading of one piece of so many, the whole being the first. It has half of the probability of a false alarm, and the
+    /// others share the rest.
+    fn of_piece(mut self, number: usize, num_pieces: usize) -> Reading {
+        let num_shares = match (number, num_pieces) {
+            (_, 1) => 1,
+            (0, _) => 2,
+            (_, num) => 2 * (num - 1),
+        };
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.ln_num_tests += libm::log(num_shares as f64);
+            hypothesis.piece = number;
+        }
+        self
+    }
 }
 
 impl Search<'_> {
@@ -84,6 +120,7 @@ impl Search<'_> {
                 Hypothesis {
                     symbols: self.symbols(candidate, view, self.see(candidate, view)),
                     ln_num_tests: libm::log((KINDS * num_declared) as f64),
+                    piece: 0,
                 }
             }));
         }
@@ -107,6 +144,7 @@ impl Search<'_> {
             hypotheses.push(Hypothesis {
                 symbols,
                 ln_num_tests: libm::log((KINDS * to_refine.len()) as f64),
+                piece: 0,
             });
         }
         Reading {
@@ -122,16 +160,13 @@ mod tests {
     use super::super::search::FOLLOWED;
     use super::super::surfaces::Surfaces;
     use super::*;
+    use crate::key::Key;
     use crate::mesh::{Mesh, shapes};
     use crate::progress::ignore;
 
-    fn reading(surfaces: &[Surface], lattice: Lattice) -> Reading {
-        read_at(
-            &mut surfaces.iter().map(Cow::Borrowed),
-            lattice,
-            &mut ignore,
-        )
-        .unwrap()
+    fn reading(surfaces: &[Surface], lattice: impl Fn() -> Lattice) -> Reading {
+        let surfaces = surfaces.iter().map(Cow::Borrowed);
+        read(vec![surfaces], lattice, &mut ignore).unwrap()
     }
 
     /// What is followed, what it is charged, and what each symbol weighs.
@@ -159,11 +194,10 @@ mod tests {
         for (name, surfaces, keys) in suspects {
             for number in keys {
                 let key = Key::from_bytes(&[number; Key::BYTES]).unwrap();
-                let drawn = reading(&surfaces, Lattice::of(&key));
+                let drawn = reading(&surfaces, || Lattice::of(&key));
                 for other in 0..2 {
                     let other = Key::from_bytes(&[100 + other; Key::BYTES]).unwrap();
-                    let lattice = Lattice::of(&key).redrawn(&other);
-                    let redrawn = reading(&surfaces, lattice);
+                    let redrawn = reading(&surfaces, || Lattice::of(&key).redrawn(&other));
                     assert!(choices(&redrawn) == choices(&drawn), "{name}, key {number}");
                     let values = |reading: &Reading| -> Vec<f64> {
                         let ways = reading.hypotheses.iter();

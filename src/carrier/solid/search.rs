@@ -77,39 +77,33 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Looks at surfaces in their order, until it is sure; `None` without a surface.
-    pub fn of(
+    /// Looks at the rest of a suspect's surfaces in their order, until it is sure; then, where axes are undetermined, scans if it may.
+    pub fn go_on(
+        &mut self,
         surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
-        lattice: Lattice,
+        may_scan: bool,
         progress: &mut dyn Progress,
-    ) -> Result<Option<Search<'a>>, Cancelled> {
-        let Some(suspect) = surfaces.next() else {
-            return Ok(None);
-        };
-        let axes = suspect.axes;
-        let mut search = Search::new(lattice, suspect);
-        let is_undetermined = axes.contains(&Axes::Undetermined);
-        let share = if is_undetermined {
-            SHARE_BEFORE_SCAN
-        } else {
-            1.0
-        };
+    ) -> Result<(), Cancelled> {
+        let axes = self.nodes[0].surface.axes;
+        let scans = may_scan && axes.contains(&Axes::Undetermined);
+        let share = if scans { SHARE_BEFORE_SCAN } else { 1.0 };
         let mut looked = 0.0;
-        while !search.is_sure() {
+        while !self.is_sure() {
             step(progress, Stage::Test, share * looked)?;
             let Some(surface) = surfaces.next() else {
                 break;
             };
             looked = part_until(surface.origin);
-            search.look(surface);
+            self.look(surface);
         }
-        if is_undetermined && !search.is_sure() {
-            search.scan(axes, progress)?;
+        if scans && !self.is_sure() {
+            self.scan(axes, progress)?;
         }
-        Ok(Some(search))
+        Ok(())
     }
 
-    fn new(lattice: Lattice, suspect: Cow<'a, Surface>) -> Search<'a> {
+    /// Looks at a suspect as it is.
+    pub fn new(lattice: Lattice, suspect: Cow<'a, Surface>) -> Search<'a> {
         let mut search = Search {
             lattice,
             turns: turns(suspect.axes != [Axes::Distinct; 2]),

@@ -70,6 +70,11 @@ impl Surfaces {
         self
     }
 
+    /// Whether there is no surface to measure.
+    pub fn is_empty(&self) -> bool {
+        self.pose.is_none()
+    }
+
     fn has_few(&self) -> bool {
         self.mesh.triangles.len() < FEW
     }

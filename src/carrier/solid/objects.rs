@@ -1,0 +1,148 @@
+//! Embedding in a scene: each of its objects has the mark in its own frame, and keeps it when it is taken out.
+
+use super::embed::embed_in_frame;
+use crate::carrier::{CarrierError, Host, Mark};
+use crate::geometry::{Piece, Pieces};
+use crate::mesh::{Admissible, Orbit};
+use crate::progress::Progress;
+use glam::DVec3;
+
+/// The share of a scene's vertices that has to be in marked objects. Where it is not, the scene is marked as one.
+const ENOUGH: f64 = 0.5;
+
+/// The displacement of all V vertices that gives the host the mark: each of its objects, where it has several that can hold one, else
+/// the whole.
+pub fn embed(
+    host: &Host,
+    mark: &Mark,
+    progress: &mut dyn Progress,
+) -> Result<Vec<DVec3>, CarrierError> {
+    let objects = Pieces::stable_objects(host.mesh);
+    let mut scene = Marked::new(host);
+    for object in objects {
+        scene.mark(object, mark, progress)?;
+    }
+    if scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64 {
+        return Ok(scene.displacement);
+    }
+    match embed_in_frame(host, mark, progress) {
+        Err(CarrierError::TooFewAddresses { .. } | CarrierError::TooWeak { .. })
+            if scene.num_marked > 0 =>
+        {
+            Ok(scene.displacement)
+        }
+        whole => whole,
+    }
+}
+
+/// A scene of which some objects are marked.
+struct Marked<'a> {
+    host: &'a Host<'a>,
+    displacement: Vec<DVec3>,
+    /// Vertices whose displacement is decided: those of marked objects, and what is tied to them.
+    is_decided: Vec<bool>,
+    /// Vertices of marked objects.
+    num_marked: usize,
+}
+
+impl<'a> Marked<'a> {
+    fn new(host: &'a Host) -> Marked<'a> {
+        let num_vertices = host.mesh.positions.len();
+        let mut is_decided = vec![false; num_vertices];
+        for &vertex in &host.admissible.fixed {
+            is_decided[vertex as usize] = true;
+        }
+        Marked {
+            host,
+            displacement: vec![DVec3::ZERO; num_vertices],
+            is_decided,
+            num_marked: 0,
+        }
+    }
+
+    /// Marks an object, where it can hold a mark. One that is an instance of a marked one holds its mark already.
+    fn mark(
+        &mut self,
+        object: Piece,
+        mark: &Mark,
+        progress: &mut dyn Progress,
+    ) -> Result<(), CarrierError> {
+        let mut vertices: Vec<u32> = object.iter().flatten().copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let mesh = self.host.mesh.part(object);
+        let num_moved = vertices
+            .iter()
+            .filter(|&&vertex| self.displacement[vertex as usize] != DVec3::ZERO)
+            .count();
+        if 2 * num_moved > vertices.len() {
+            self.num_marked += vertices.len();
+            return Ok(());
+        }
+        let admissible = self.admissible_in(&vertices);
+        let host = Host {
+            mesh: &mesh,
+            admissible: &admissible,
+            ..*self.host
+        };
+        match embed_in_frame(&host, mark, progress) {
+            Ok(displacement) => {
+                self.decide(&vertices, &displacement);
+                self.num_marked += vertices.len();
+                Ok(())
+            }
+            Err(CarrierError::Cancelled(cancelled)) => Err(cancelled.into()),
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// What an object's vertices may do, by their places among its own.
+    fn admissible_in(&self, vertices: &[u32]) -> Admissible {
+        let place = |vertex: u32| {
+            vertices
+                .binary_search(&vertex)
+                .ok()
+                .map(|place| place as u32)
+        };
+        let orbits = self.host.admissible.orbits.iter().map(|orbit| Orbit {
+            members: orbit
+                .members
+                .iter()
+                .filter_map(|&(vertex, map)| Some((place(vertex)?, map)))
+                .collect(),
+        });
+        let is_decided = |(_, vertex): &(u32, &u32)| self.is_decided[**vertex as usize];
+        Admissible {
+            orbits: orbits.filter(|orbit| orbit.members.len() > 1).collect(),
+            fixed: (0..)
+                .zip(vertices)
+                .filter(is_decided)
+                .map(|(place, _)| place)
+                .collect(),
+        }
+    }
+
+    /// Moves an object's vertices, and what is tied to them.
+    fn decide(&mut self, vertices: &[u32], displacement: &[DVec3]) {
+        for (&vertex, &d) in vertices.iter().zip(displacement) {
+            let vertex = vertex as usize;
+            if !self.is_decided[vertex] {
+                self.displacement[vertex] = d;
+                self.is_decided[vertex] = true;
+            }
+        }
+        for orbit in &self.host.admissible.orbits {
+            let of_object = orbit
+                .members
+                .iter()
+                .find(|(vertex, _)| vertices.binary_search(vertex).is_ok());
+            if let Some(&(vertex, map)) = of_object {
+                let shared = map.inverse() * self.displacement[vertex as usize];
+                for &(vertex, map) in &orbit.members {
+                    self.displacement[vertex as usize] = map * shared;
+                    self.is_decided[vertex as usize] = true;
+                }
+            }
+        }
+    }
+}

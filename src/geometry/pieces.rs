@@ -1,0 +1,192 @@
+//! The pieces of a scene: what may have been a model of its own, told from the surface alone.
+//!
+//! A part is what hangs together by vertices. Parts whose boxes touch make an object: a figure and what it holds, a table's top and its
+//! legs. Neither depends on where the scene lies, on names or on nodes, so pieces are the same after joining, flattening and turning.
+
+use super::Pose;
+use crate::mesh::{Mesh, Sets};
+use glam::DVec3;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// A piece of fewer triangles is too small to hold a mark.
+const LEAST_TRIANGLES: usize = 100;
+
+/// Parts of the most triangles, among which objects are looked for: all pairs are compared.
+const MOST_PARTS: usize = 512;
+
+/// Boxes touch where they are nearer to each other than this part of the smaller one's diagonal.
+const TOUCH: f64 = 0.02;
+
+/// A part that is thinner than this part of its diagonal, and wider than the next, is a sheet: a floor, a wall, a terrain. It is no
+/// object with what stands on it.
+const THIN: f64 = 0.1;
+const WIDE: f64 = 0.3;
+
+/// Triangles of a mesh that may have been a model.
+pub type Piece = Vec<[u32; 3]>;
+
+/// The objects of a mesh, and those of their parts that could hold a mark alone; of each, those that have most triangles first.
+pub struct Pieces {
+    /// None where the whole mesh is one object.
+    pub objects: Vec<Piece>,
+    /// Those that are no objects themselves.
+    pub parts: Vec<Piece>,
+}
+
+impl Pieces {
+    /// Finds them. O(V + F + P^2), P the number of parts, at most 512.
+    pub fn of(mesh: &Mesh) -> Pieces {
+        let parts = parts(mesh);
+        let objects = objects_of(mesh, &parts, 1.0);
+        let is_composed = |object: &&Vec<usize>| object.len() > 1;
+        let composed = objects.iter().filter(is_composed).flatten();
+        Pieces {
+            parts: largest(composed.map(|&part| parts[part].clone()), mesh),
+            objects: largest(objects.iter().map(|object| joined(object, &parts)), mesh),
+        }
+    }
+
+    /// The objects alone that stay what they are where parts lie somewhat nearer to each other or farther apart, or have fewer
+    /// triangles: those of a copy are the same.
+    pub fn stable_objects(mesh: &Mesh) -> Vec<Piece> {
+        let parts = parts(mesh);
+        let [tight, objects, loose] = [0.5, 1.0, 2.0].map(|slack| objects_of(mesh, &parts, slack));
+        let is_stable = |object: &&Vec<usize>| tight.contains(object) && loose.contains(object);
+        let stable = objects.iter().filter(is_stable);
+        largest(stable.map(|object| joined(object, &parts)), mesh)
+    }
+}
+
+fn joined(object: &[usize], parts: &[Piece]) -> Piece {
+    let triangles = object.iter().flat_map(|&part| &parts[part]);
+    triangles.copied().collect()
+}
+
+/// Those that have enough triangles and are not the whole mesh.
+fn largest(pieces: impl Iterator<Item = Piece>, mesh: &Mesh) -> Vec<Piece> {
+    let sizes = LEAST_TRIANGLES..mesh.triangles.len();
+    let mut pieces: Vec<Piece> = pieces
+        .filter(|piece| sizes.contains(&piece.len()))
+        .collect();
+    pieces.sort_by_key(|piece| Reverse(piece.len()));
+    pieces
+}
+
+/// What hangs together by vertices, most triangles first, no more than are compared; of equally many in the order of their first
+/// triangles.
+fn parts(mesh: &Mesh) -> Vec<Piece> {
+    let mut sets = Sets::new(mesh.positions.len());
+    for &[a, b, c] in &mesh.triangles {
+        sets.join(a, b);
+        sets.join(a, c);
+    }
+    let mut parts: BTreeMap<u32, Piece> = BTreeMap::new();
+    for triangle in &mesh.triangles {
+        let part = parts.entry(sets.find(triangle[0])).or_default();
+        part.push(*triangle);
+    }
+    let mut parts: Vec<Piece> = parts.into_values().collect();
+    parts.sort_by_key(|part| Reverse(part.len()));
+    parts.truncate(MOST_PARTS);
+    parts
+}
+
+/// The parts of each object, by their places. `slack` multiplies the limits, and is 1 but where it is asked whether they matter.
+fn objects_of(mesh: &Mesh, parts: &[Piece], slack: f64) -> Vec<Vec<usize>> {
+    let boxes: Vec<Option<Enclosing>> =
+        parts.iter().map(|part| Enclosing::of(mesh, part)).collect();
+    let mut sets = Sets::new(parts.len());
+    for (second, smaller) in (0..).zip(&boxes) {
+        for (first, larger) in (0..second).zip(&boxes) {
+            if let (Some(a), Some(b)) = (larger, smaller)
+                && a.belongs_with(b, slack)
+            {
+                sets.join(first, second);
+            }
+        }
+    }
+    let mut objects: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for part in 0..parts.len() {
+        objects
+            .entry(sets.find(part as u32))
+            .or_default()
+            .push(part);
+    }
+    objects.into_values().collect()
+}
+
+/// A box about a part, along the part's own axes: it turns with the part.
+struct Enclosing {
+    num_triangles: usize,
+    centre: DVec3,
+    axes: [DVec3; 3],
+    /// Half of the sides.
+    halves: [f64; 3],
+}
+
+impl Enclosing {
+    fn of(mesh: &Mesh, part: &[[u32; 3]]) -> Option<Enclosing> {
+        let part = mesh.part(part.iter().copied());
+        let pose = Pose::of(&part)?;
+        let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
+        let along = |axis: DVec3| {
+            let places = part
+                .positions
+                .iter()
+                .map(|position| (*position - pose.centre).dot(axis));
+            places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
+                (low.min(place), high.max(place))
+            })
+        };
+        let ranges = axes.map(along);
+        let middle = |axis: usize| axes[axis] * ((ranges[axis].0 + ranges[axis].1) / 2.0);
+        Some(Enclosing {
+            num_triangles: part.triangles.len(),
+            centre: pose.centre + middle(0) + middle(1) + middle(2),
+            axes,
+            halves: ranges.map(|(low, high)| (high - low) / 2.0),
+        })
+    }
+
+    fn diagonal(&self) -> f64 {
+        2.0 * DVec3::from_array(self.halves).length()
+    }
+
+    fn is_sheet(&self, slack: f64) -> bool {
+        let mut sides = self.halves.map(|half| 2.0 * half / self.diagonal());
+        sides.sort_by(f64::total_cmp);
+        sides[0] < THIN * slack.sqrt() && sides[1] > WIDE
+    }
+
+    /// Whether two parts are of one object: they touch, and the larger one is no floor under the smaller one and no bare box about it.
+    fn belongs_with(&self, other: &Enclosing, slack: f64) -> bool {
+        let (larger, smaller) = match self.diagonal() >= other.diagonal() {
+            true => (self, other),
+            false => (other, self),
+        };
+        larger.num_triangles as f64 >= LEAST_TRIANGLES as f64 * slack
+            && !larger.is_sheet(slack)
+            && self.is_within(other, TOUCH * slack * smaller.diagonal())
+    }
+
+    /// Whether no plane keeps the boxes farther apart than a distance (the separating axes of Gottschalk et al. 1996).
+    fn is_within(&self, other: &Enclosing, distance: f64) -> bool {
+        let apart = other.centre - self.centre;
+        let reach = |of: &Enclosing, axis: DVec3| -> f64 {
+            of.axes
+                .iter()
+                .zip(of.halves)
+                .map(|(own, half)| own.dot(axis).abs() * half)
+                .sum()
+        };
+        let crossed = self
+            .axes
+            .iter()
+            .flat_map(|a| other.axes.iter().map(move |b| a.cross(*b)));
+        let candidates = self.axes.iter().chain(&other.axes).copied().chain(crossed);
+        candidates
+            .filter_map(DVec3::try_normalize)
+            .all(|axis| apart.dot(axis).abs() <= reach(self, axis) + reach(other, axis) + distance)
+    }
+}

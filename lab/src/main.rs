@@ -20,6 +20,7 @@ mod report;
 mod run;
 mod seed;
 mod study;
+mod wild;
 
 use clap::Parser;
 use journal::{Header, Journal};
@@ -65,6 +66,13 @@ struct Arguments {
     /// Instead of the grid: forgers who may ask a detector with so many keys, and what they need; prints a table.
     #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study"])]
     oracle: Option<u64>,
+    /// Instead of the grid: every .glb and .gltf in a folder, marked, and after what people do to files; prints a table. With --real, what
+    /// web developers' programs leave too.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "false_positives", "study", "oracle"])]
+    wild: Option<PathBuf>,
+    /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
+    #[arg(long, default_value = "balanced", requires = "wild")]
+    strength: Strength,
     /// Another file to write; plots are in a folder beside it.
     #[arg(long)]
     output: Option<PathBuf>,
@@ -108,6 +116,18 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     };
     if let Some(num_keys) = arguments.oracle {
         return Ok(oracle::table(&Seed::new(seed), num_keys));
+    }
+    if let Some(folder) = &arguments.wild {
+        let tools = arguments
+            .real
+            .as_ref()
+            .map(|folder| real::tools(folder, false));
+        return wild::table(
+            folder,
+            arguments.strength,
+            &Seed::new(seed),
+            tools.unwrap_or_default(),
+        );
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -16,6 +16,7 @@ pub(crate) use error::{possible, take};
 pub use reading::{Hypothesis, Reading};
 
 use crate::code::Codeword;
+use crate::geometry::Leeway;
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::{Cancelled, Progress, ignore};
@@ -216,6 +217,8 @@ impl KnownHost {
 pub struct Host<'a> {
     /// The mesh, in scene units.
     pub mesh: &'a Mesh,
+    /// How far its vertices may go from where they were before any carrier moved them.
+    pub leeway: &'a Leeway<'a>,
     /// Which displacements can be written back.
     pub admissible: &'a Admissible,
     /// Limit of the RMS displacement over all vertices, as a fraction of the diagonal.

@@ -2,12 +2,16 @@
 
 mod arc;
 mod curvature;
+mod deformation;
 mod dihedral;
 mod distortion;
+mod facet;
+mod leeway;
 mod linear;
 mod msdm;
 mod normal;
 mod orientation;
+mod parts;
 mod pieces;
 mod pose;
 mod quadrature;
@@ -22,11 +26,14 @@ pub use arc::refined;
 pub use curvature::{
     Curvature, CurvatureIntegrals, cotangents, curvature_integrals, fitted_curvature,
 };
+pub use deformation::Deformation;
 pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
+pub use leeway::{Bounds, Leeway};
 pub use linear::{conjugate_gradients, unconditioned};
 pub use normal::{face_areas, normal_deviations, vertex_normals};
 pub use orientation::{oriented, outward};
+pub use parts::Parts;
 pub use pieces::{Piece, Pieces};
 pub use pose::Pose;
 pub use quadrature::{Quadrature, Sample};

@@ -15,16 +15,30 @@ impl Scene {
     /// [`SceneError::TooLarge`] before anything is loaded, if the scene is beyond the limits that [`Count::check`] knows; the others
     /// of [`SceneError`] after that.
     pub fn gather(document: &Document) -> Result<Scene, SceneError> {
-        let placed = placed_nodes(document);
-        let count = Count::new(document, placed.iter().map(|placed| placed.mesh))?;
-        count.check()?;
-        let drawn = drawn_parts(document);
-        let mut gathering = Gathering::with_room_for(&count);
-        for placed in placed {
-            let parts = drawn.get(placed.mesh).map_or(&[][..], Vec::as_slice);
-            gathering.add(document, &placed, parts)?;
+        Gathering::of(document)?.weld(document)
+    }
+
+    /// What [`gather`](Self::gather) gathers, before it is welded: a mesh for each position accessor that a node shows, in world space.
+    ///
+    /// # Errors
+    ///
+    /// As [`gather`](Self::gather).
+    pub fn pieces(document: &Document) -> Result<Vec<Mesh>, SceneError> {
+        let gathering = Gathering::of(document)?;
+        let mut pieces: Vec<Mesh> = gathering
+            .worlds
+            .into_iter()
+            .map(|positions| Mesh {
+                positions,
+                triangles: Vec::new(),
+            })
+            .collect();
+        for (placement, triangle) in gathering.triangles {
+            if let Some(piece) = pieces.get_mut(placement as usize) {
+                piece.triangles.push(triangle);
+            }
         }
-        gathering.weld(document)
+        Ok(pieces)
     }
 }
 
@@ -113,6 +127,19 @@ struct Gathering {
 }
 
 impl Gathering {
+    fn of(document: &Document) -> Result<Gathering, SceneError> {
+        let placed = placed_nodes(document);
+        let count = Count::new(document, placed.iter().map(|placed| placed.mesh))?;
+        count.check()?;
+        let drawn = drawn_parts(document);
+        let mut gathering = Gathering::with_room_for(&count);
+        for placed in placed {
+            let parts = drawn.get(placed.mesh).map_or(&[][..], Vec::as_slice);
+            gathering.add(document, &placed, parts)?;
+        }
+        Ok(gathering)
+    }
+
     /// The count was checked: nothing here is larger than a u32.
     fn with_room_for(count: &Count) -> Gathering {
         Gathering {

@@ -130,6 +130,15 @@ export interface EmbedReport {
   /** Displacement over all vertices, as fractions of that diagonal. */
   rmsRel: number;
   maxRel: number;
+  /**
+   * The farthest that a vertex went from where the mean movement of its part, what hangs together by edges, would have taken it, as a
+   * fraction of the part's own diagonal; at most 0.01, at the strong strength 0.02. And the largest angle in degrees by which a triangle
+   * turned that is no sliver; at most 10, at the strong strength 20.
+   */
+  worstPartRel: number;
+  worstTurnDegrees: number;
+  /** What may be seen, in sentences: none, but for strengths that are given as a number. */
+  warnings: string[];
   strength: number;
   /** The output as `extract` reads it. */
   readBack: DetailedExtraction;

@@ -7,9 +7,9 @@ use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files, Written};
-use crate::geometry::{Distortion, diagonal};
+use crate::geometry::{Bounds, Deformation, Distortion, Leeway, diagonal};
 use crate::key::Key;
-use crate::mesh::Mesh;
+use crate::mesh::{Admissible, Mesh};
 use crate::progress::Stage;
 use crate::scene::Scene;
 use glam::DVec3;
@@ -59,6 +59,7 @@ fn embed_in(
         written,
     } = mark(&mut model, payload, key, options)?;
     let distortion = Distortion::between(&host.positions, &marked.positions);
+    let deformation = Deformation::between(&host, &marked.positions);
     let mut marked_files = model.files.clone();
     marked_files.extend(written.files.clone());
     let copy = Model::new(&written.model).with_files(&marked_files);
@@ -81,6 +82,9 @@ fn embed_in(
         diagonal: diagonal(&host.positions),
         rms_rel: distortion.rms_rel,
         max_rel: distortion.max_rel,
+        worst_part_rel: deformation.worst_part,
+        worst_turn_degrees: deformation.worst_turn,
+        warnings: warnings(&deformation),
         strength: options.strength.rms_rel(),
         read_back,
         forecast,
@@ -92,6 +96,25 @@ fn embed_in(
         files: written.files,
         report,
     })
+}
+
+/// What may be seen of a deformation: more than the strong strength's.
+fn warnings(deformation: &Deformation) -> Vec<String> {
+    let bounds = Bounds::STRONG;
+    let mut warnings = Vec::new();
+    if deformation.worst_part > 2.0 * bounds.part {
+        warnings.push(format!(
+            "a part of the model is deformed by {:.1} % of its own size: look at it, or take a smaller strength",
+            100.0 * deformation.worst_part
+        ));
+    }
+    if deformation.worst_turn > bounds.turn {
+        warnings.push(format!(
+            "a triangle turned by {:.0} degrees: look at it, or take a smaller strength",
+            deformation.worst_turn
+        ));
+    }
+    warnings
 }
 
 /// What is left of an embedding once it is written.
@@ -119,6 +142,7 @@ fn mark(
         codeword: &codeword,
     };
     let mut mesh = scene.mesh.clone();
+    let leeway = Leeway::new(&scene.mesh, options.strength.bounds());
     let chosen: Vec<Carrier> = Carrier::ALL
         .into_iter()
         .filter(|carrier| options.carriers.contains(carrier))
@@ -136,6 +160,7 @@ fn mark(
         };
         let host = Host {
             mesh: &mesh,
+            leeway: &leeway,
             admissible: &scene.admissible,
             rms_rel,
             hidden: options.strength.is_hidden(),
@@ -164,10 +189,10 @@ fn mark(
     let displacement: Vec<DVec3> = pairs
         .map(|(marked, host)| (*marked - *host) * scale)
         .collect();
-    scene.scatter(&mut document, &displacement)?;
     // What is done with makes room: models of a million vertices are marked in a browser tab too.
-    drop((mesh, displacement));
-    let positions = scene.positions_in(&document)?;
+    drop(mesh);
+    let positions = write(model, &mut document, &scene, &leeway, displacement)?;
+    drop(leeway);
     let host = scene.mesh;
     let written = document.write()?;
     drop(document);
@@ -178,4 +203,39 @@ fn mark(
         marked,
         written,
     })
+}
+
+/// Displaces the vertices of a document that was just read, and says where they are then. Those that rounding to the file's numbers takes
+/// too far, or whose triangles it turns too far, stay where they were.
+pub(super) fn write(
+    model: &Model,
+    document: &mut Document,
+    scene: &Scene,
+    leeway: &Leeway,
+    mut displacement: Vec<DVec3>,
+) -> Result<Vec<DVec3>, Error> {
+    loop {
+        scene.scatter(document, &displacement)?;
+        let positions = scene.positions_in(document)?;
+        let mut beyond = leeway.beyond(&positions);
+        beyond.retain(|&vertex| displacement[vertex as usize] != DVec3::ZERO);
+        if beyond.is_empty() {
+            return Ok(positions);
+        }
+        hold(&mut displacement, &scene.admissible, &beyond);
+        *document = Document::read(model.bytes, model.files)?;
+    }
+}
+
+/// Leaves vertices, and those that move with them, where they are.
+fn hold(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32]) {
+    for &vertex in vertices {
+        displacement[vertex as usize] = DVec3::ZERO;
+    }
+    for orbit in &admissible.orbits {
+        let members = || orbit.members.iter().map(|&(vertex, _)| vertex as usize);
+        if members().any(|vertex| displacement[vertex] == DVec3::ZERO) {
+            members().for_each(|vertex| displacement[vertex] = DVec3::ZERO);
+        }
+    }
 }

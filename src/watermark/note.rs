@@ -1,5 +1,6 @@
 //! Notes: a text in the distances of all vertices from the centroid, beside the mark or without one. Read with the key alone.
 
+use super::embed::write;
 use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
 use crate::carrier::direction::{Cells, NUM_TESTS};
@@ -7,7 +8,7 @@ use crate::code::{Block, TextCheck, TextError};
 use crate::detection::{LN_P_FOUND, Statistic, union};
 use crate::digest::sha256;
 use crate::document::{Document, Files};
-use crate::geometry::Distortion;
+use crate::geometry::{Bounds, Deformation, Distortion, Leeway};
 use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::Stage;
@@ -62,6 +63,10 @@ pub struct NoteReport {
     pub rms_rel: f64,
     /// Maximum displacement, as a fraction of that diagonal.
     pub max_rel: f64,
+    /// As in a mark's report: at most 0.02.
+    pub worst_part_rel: f64,
+    /// As in a mark's report: at most 20.
+    pub worst_turn_degrees: f64,
     /// The output, read again from its bytes.
     pub read_back: NoteReading,
     /// SHA-256 of the main file before.
@@ -117,9 +122,12 @@ pub fn embed_note<'a>(
     model.step(Stage::Embed, 0.0)?;
     let mut displacement = Cells::new(key, block, STEP).embed(&scene.mesh, &message)?;
     scene.admissible.project(&mut displacement);
+    let leeway = Leeway::new(&scene.mesh, Bounds::STRONG);
+    leeway.keep(&scene.mesh.positions, &mut displacement, &scene.admissible);
     model.step(Stage::Write, 0.0)?;
-    scene.scatter(&mut document, &displacement)?;
-    let marked = scene.mesh.with_positions(scene.positions_in(&document)?);
+    let positions = write(&model, &mut document, &scene, &leeway, displacement)?;
+    let marked = scene.mesh.with_positions(positions);
+    let deformation = Deformation::between(&scene.mesh, &marked.positions);
     let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);
     let written = document.write()?;
     model.step(Stage::Write, 1.0)?;
@@ -141,6 +149,8 @@ pub fn embed_note<'a>(
             moved_vertices: distortion.num_moved,
             rms_rel: distortion.rms_rel,
             max_rel: distortion.max_rel,
+            worst_part_rel: deformation.worst_part,
+            worst_turn_degrees: deformation.worst_turn,
             read_back,
             host_sha256: sha256(model.bytes),
             marked_sha256: sha256(&written.model),

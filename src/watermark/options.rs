@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::carrier::Carrier;
+use crate::geometry::Bounds;
 
 /// Options of [`embed`](super::embed).
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +88,15 @@ impl Strength {
             "strong" => Some(Strength::STRONG),
             _ => None,
         }
+    }
+
+    /// How far a vertex may go by its part and its triangles. What is stronger than strong may go farther in proportion, for somebody
+    /// insists.
+    pub(super) fn bounds(self) -> Bounds {
+        if self.hidden {
+            return Bounds::HIDDEN;
+        }
+        Bounds::STRONG.times((self.rms_rel / Strength::STRONG.rms_rel).max(1.0))
     }
 
     /// The fraction.

@@ -159,6 +159,14 @@ pub struct EmbedReport {
     pub rms_rel: f64,
     /// Maximum displacement, as a fraction of that diagonal.
     pub max_rel: f64,
+    /// The farthest that a vertex went from where the mean movement of its part, what hangs together by edges, would have taken it, as a
+    /// fraction of the part's own diagonal. At most 0.01 at the subtle and balanced strengths, 0.02 at the strong one.
+    pub worst_part_rel: f64,
+    /// The largest angle, in degrees, by which a triangle turned that is no sliver. At most 10 at the subtle and balanced strengths, 20 at
+    /// the strong one; none turns over.
+    pub worst_turn_degrees: f64,
+    /// What may be seen, in sentences: nothing, but for strengths that are given as a number.
+    pub warnings: Vec<String>,
     /// The strength that was asked for.
     pub strength: f64,
     /// The output, read again from its bytes.

@@ -68,6 +68,6 @@ fn golden_terrain() {
 fn golden_gallery() {
     check(
         &gallery(Packing::Glb),
-        ["98c4293e50a09b79", "e9d8ca11986df95e", "a760afad92ae95a0"],
+        ["98c4293e50a09b79", "0d97a1dfe5a44e6c", "9a9e37830b0c62bb"],
     );
 }

@@ -18,6 +18,7 @@ mod floors;
 mod geometry;
 mod golden;
 mod key;
+mod leeway;
 mod mesh;
 mod models;
 mod note;

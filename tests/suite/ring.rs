@@ -1,6 +1,6 @@
 //! The RING carrier.
 
-use crate::support::fixtures::{asteroid, key};
+use crate::support::fixtures::{asteroid, key, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{crop, reorder, similarity};
 use meshmark::internals::carrier::ring::{Measurement, NEEDED_ADDRESSES, num_addresses};
@@ -17,6 +17,7 @@ const MESSAGE: u64 = 0x123_4567_89ab_cdef;
 fn marked(mesh: &Mesh, admissible: &Admissible) -> Vec<DVec3> {
     let host = Host {
         mesh,
+        leeway: &strong(mesh),
         admissible,
         rms_rel: 0.0004,
         hidden: false,
@@ -204,6 +205,7 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
     };
     let host = Host {
         mesh: &torus,
+        leeway: &strong(&torus),
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
         hidden: false,

@@ -1,6 +1,6 @@
 //! The SOLID carrier.
 
-use crate::support::fixtures::key;
+use crate::support::fixtures::{key, strong};
 use glam::DVec3;
 use meshmark::internals::attack::{
     crop, noise, quantize, reorder, similarity, smooth, smooth_inside,
@@ -29,6 +29,7 @@ fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
     marked_as(
         &Host {
             mesh,
+            leeway: &strong(mesh),
             admissible: &Admissible::default(),
             rms_rel,
             hidden: false,
@@ -120,6 +121,7 @@ fn solid_hides_in_rough_surfaces() {
     }
     let host = Host {
         mesh: &block,
+        leeway: &strong(&block),
         admissible: &Admissible::default(),
         rms_rel: 0.0004,
         hidden: true,
@@ -230,6 +232,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
     assert_eq!(num_windows(&sheet), 9);
     let host = Host {
         mesh: &sheet,
+        leeway: &strong(&sheet),
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
         hidden: false,

@@ -108,6 +108,8 @@ fn displacement(
             .collect();
         host.admissible.project(&mut displacement);
         scale_to_rms(&mut displacement, limit);
+        host.leeway
+            .keep(positions, &mut displacement, host.admissible);
     }
     Ok(displacement)
 }

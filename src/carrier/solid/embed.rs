@@ -56,7 +56,7 @@ pub fn embed_in_frame(
     let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
     let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
     let whole = host.rms_rel * diagonal(&mesh.positions);
-    let freedom = freedoms(&mesh, &boundary, host);
+    let freedom = freedoms(&mesh, &boundary, host, CLAMPS[0]);
     let typical = typical(&freedom);
     // Where a detector has to scan, the pilots are spent on that, and two thirds of the symbols are left to testify.
     let all = if axes_of(&pose).contains(&Axes::Undetermined) {
@@ -258,6 +258,8 @@ impl Embedder<'_> {
         self.host.admissible.project(displacement);
         let scale = (self.limit / self.rms(displacement)).min(1.0);
         displacement.iter_mut().for_each(|d| *d *= scale);
+        let (leeway, admissible) = (self.host.leeway, &self.host.admissible);
+        leeway.keep(&self.mesh.positions, displacement, admissible);
     }
 
     /// The RMS of a displacement; where it is to be hidden, as if all vertices were as free as is typical: what rough parts

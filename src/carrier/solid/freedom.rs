@@ -23,8 +23,12 @@ const LEAST_FREEDOM: f64 = 0.25;
 /// What an open boundary leaves of a freedom: its outline is seen against what is behind.
 const BOUNDARY: f64 = 0.5;
 
-/// How far each of the V vertices of a host's oriented mesh may move, as a share of its limit: at most 1.
-pub fn freedoms(mesh: &Mesh, boundary: &[(u32, u32)], host: &Host) -> Vec<f64> {
+/// The least freedom of a vertex that may hardly move: freedoms are divided by.
+const SMALLEST: f64 = 1e-3;
+
+/// How far each of the V vertices of a host's oriented mesh may move, as a share of its limit: at most 1. The host's leeway is what a
+/// vertex may move at most, which is `clamp` times its freedom.
+pub fn freedoms(mesh: &Mesh, boundary: &[(u32, u32)], host: &Host, clamp: f64) -> Vec<f64> {
     let limit = host.rms_rel * diagonal(&mesh.positions);
     let least = if host.hidden {
         (LEAST_RMS / host.rms_rel).min(1.0)
@@ -48,7 +52,11 @@ pub fn freedoms(mesh: &Mesh, boundary: &[(u32, u32)], host: &Host) -> Vec<f64> {
     }
     freedoms
         .into_iter()
-        .map(|freedom| freedom.clamp(least, 1.0))
+        .zip(host.leeway.reaches())
+        .map(|(freedom, reach)| {
+            let most = (reach / (clamp * limit)).clamp(SMALLEST, 1.0);
+            freedom.clamp(least, 1.0).min(most)
+        })
         .collect()
 }
 

@@ -80,8 +80,10 @@ impl<'a> Marked<'a> {
             return Ok(());
         }
         let admissible = self.admissible_in(&vertices);
+        let leeway = self.host.leeway.of(&mesh);
         let host = Host {
             mesh: &mesh,
+            leeway: &leeway,
             admissible: &admissible,
             ..*self.host
         };

@@ -2,6 +2,7 @@
 
 use super::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
+use meshmark::internals::geometry::{Bounds, Leeway};
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::{EmbedOptions, Embedding, Error, Key, Payload, embed};
 
@@ -17,6 +18,11 @@ pub fn payload() -> Payload {
 /// Marks a `.glb` with the defaults.
 pub fn marked(model: &[u8], key: &Key) -> Result<Embedding, Error> {
     embed(model, payload(), key, &EmbedOptions::default())
+}
+
+/// How far a mesh's vertices may move at the strong strength.
+pub fn strong(mesh: &Mesh) -> Leeway<'_> {
+    Leeway::new(mesh, Bounds::STRONG)
 }
 
 pub fn asteroid() -> Mesh {

@@ -1,0 +1,246 @@
+//! Files of one's own: what marking them does to each of their parts, and what the usual steps of a web pipeline leave of the mark.
+
+use crate::real::Tool;
+use crate::seed::Seed;
+use meshmark::internals::attack::{Step, step};
+use meshmark::internals::document::Document;
+use meshmark::internals::geometry::Deformation;
+use meshmark::internals::mesh::Mesh;
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{
+    EmbedOptions, Error, Files, Key, Model, Payload, Strength, Verdict, detect, embed, file_names,
+};
+use rayon::prelude::*;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Bits of the grid that each primitive gets in its own box, as Draco's encoders in glTF-Transform have it.
+const GRID_BITS: u32 = 14;
+
+/// What people's programs are told.
+const TOOLS: [&str; 8] = [
+    "glTF-Transform draco",
+    "glTF-Transform meshopt",
+    "glTF-Transform quantize",
+    "glTF-Transform optimize",
+    "glTF-Transform flatten",
+    "glTF-Transform join",
+    "gltfpack -cc",
+    "gltfpack -si 0.5",
+];
+
+/// A column: what is done to the marked file.
+enum Column {
+    /// Every primitive in world space and in single precision, by itself.
+    Joined,
+    /// The same, each on a grid of its own.
+    Grids,
+    Attack(Step),
+    Tool(Tool),
+}
+
+/// A table with a line for each file, of keys and payloads that come from a seed.
+pub fn table(
+    folder: &Path,
+    strength: Strength,
+    seed: &Seed,
+    tools: Vec<Tool>,
+) -> Result<String, String> {
+    let mut paths = Vec::new();
+    collect(folder, &mut paths)?;
+    paths.sort();
+    let attacks = ["glTF quantize 14 bits", "simplify 50 %"].map(|name| step(name).ok_or(name));
+    let mut columns = vec![Column::Joined, Column::Grids];
+    for attack in attacks {
+        columns.push(Column::Attack(attack?));
+    }
+    let chosen = tools
+        .into_iter()
+        .filter(|tool| TOOLS.contains(&&*tool.name));
+    columns.extend(chosen.map(Column::Tool));
+
+    let mut text = String::from(
+        "| file | class | vertices | solid | ring | worst part, % | worst turn, degrees | turned over | s |",
+    );
+    columns.iter().for_each(|column| {
+        let _ = write!(text, " {} |", column.name()); // strings take what is written
+    });
+    let _ = write!(text, "\n|---|---|{}", "--:|".repeat(7 + columns.len()));
+    let lines: Vec<String> = paths
+        .par_iter()
+        .map(|path| {
+            let name = path.strip_prefix(folder).unwrap_or(path).display();
+            line(path, strength, seed, &columns).map_or_else(
+                |code| format!("\n| {name} | {code} |{}", " |".repeat(7 + columns.len())),
+                |cells| format!("\n| {name} | marked | {} |", cells.join(" | ")),
+            )
+        })
+        .collect();
+    text.extend(lines);
+    Ok(text)
+}
+
+impl Column {
+    fn name(&self) -> String {
+        match self {
+            Column::Joined => "flatten + join".to_owned(),
+            Column::Grids => format!("grids of {GRID_BITS} bits"),
+            Column::Attack(step) => step.to_string(),
+            Column::Tool(tool) => tool.name.clone(),
+        }
+    }
+
+    /// What becomes of a marked file, as a `.glb`.
+    fn apply(&self, marked: &Opened, mesh: &Mesh, scratch: &Path) -> Result<Vec<u8>, String> {
+        match self {
+            Column::Joined => Ok(to_glb(&Mesh::joined(marked.pieces()?))),
+            Column::Grids => {
+                let pieces = marked.pieces()?.into_iter().map(|piece| on_grid(&piece));
+                Ok(to_glb(&Mesh::joined(pieces)))
+            }
+            Column::Attack(step) => Ok(to_glb(&step.apply(mesh, 1))),
+            Column::Tool(_) if !marked.files.is_empty() => Err("no .glb".to_owned()),
+            Column::Tool(tool) => {
+                let said = |error| format!("{}: {error}", scratch.display());
+                std::fs::create_dir_all(scratch).map_err(said)?;
+                let made = tool.run(&marked.bytes, scratch);
+                std::fs::remove_dir_all(scratch).map_err(said)?;
+                made
+            }
+        }
+    }
+}
+
+/// A mesh on the grid of its own box.
+fn on_grid(mesh: &Mesh) -> Mesh {
+    let low = mesh
+        .positions
+        .iter()
+        .copied()
+        .reduce(|a, b| a.min(b))
+        .unwrap_or_default();
+    let high = mesh
+        .positions
+        .iter()
+        .copied()
+        .reduce(|a, b| a.max(b))
+        .unwrap_or_default();
+    let pitch = (high - low).max_element() / f64::from((1u32 << GRID_BITS) - 1);
+    if pitch <= 0.0 {
+        return mesh.clone();
+    }
+    let positions = mesh.positions.iter();
+    mesh.with_positions(
+        positions
+            .map(|p| ((*p - low) / pitch).round() * pitch + low)
+            .collect(),
+    )
+}
+
+/// A model with its buffers.
+struct Opened {
+    bytes: Vec<u8>,
+    files: Files,
+}
+
+impl Opened {
+    fn new(path: &Path) -> Result<Opened, String> {
+        let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+        let mut files = Files::new();
+        for name in file_names(&bytes).map_err(|error| error.code().to_owned())? {
+            let buffer = std::fs::read(path.with_file_name(&name));
+            files.insert(name, buffer.map_err(|error| error.to_string())?);
+        }
+        Ok(Opened { bytes, files })
+    }
+
+    fn document(&self) -> Result<Document, String> {
+        Document::read(&self.bytes, &self.files).map_err(|error| error.code().to_owned())
+    }
+
+    fn mesh(&self) -> Result<Mesh, String> {
+        let scene = Scene::gather(&self.document()?).map_err(|error| error.code().to_owned())?;
+        Ok(scene.mesh)
+    }
+
+    /// What its nodes show, rounded to single precision in world space.
+    fn pieces(&self) -> Result<Vec<Mesh>, String> {
+        let pieces = Scene::pieces(&self.document()?).map_err(|error| error.code().to_owned())?;
+        let round = |piece: Mesh| {
+            let positions = piece.positions.iter();
+            piece.with_positions(positions.map(|p| p.as_vec3().as_dvec3()).collect())
+        };
+        Ok(pieces.into_iter().map(round).collect())
+    }
+}
+
+/// The cells behind a file's class; the code of what stopped it, if it cannot be marked.
+fn line(
+    path: &Path,
+    strength: Strength,
+    seed: &Seed,
+    columns: &[Column],
+) -> Result<Vec<String>, String> {
+    let purpose = path.file_name().unwrap_or_default().to_string_lossy();
+    let (key, payload) = (seed.key(&purpose, 0), seed.payload(&purpose));
+    let host = Opened::new(path)?;
+    let start = Instant::now();
+    let options = EmbedOptions::default().with_strength(strength);
+    let model = Model::new(&host.bytes).with_files(&host.files);
+    let marking = embed(model, payload, &key, &options).map_err(|e: Error| e.code().to_owned())?;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut files = host.files.clone();
+    files.extend(marking.files);
+    let marked = Opened {
+        bytes: marking.model,
+        files,
+    };
+    let (mesh, after) = (host.mesh()?, marked.mesh()?);
+    let deformation = Deformation::between(&mesh, &after.positions);
+    let report = &marking.report;
+    let ln_p = |place: usize| {
+        let carriers = &report.read_back.details().carriers;
+        carriers.get(place).map_or(0.0, |carrier| carrier.ln_p)
+    };
+    let mut cells = vec![
+        report.vertices.to_string(),
+        format!("{:.0}", ln_p(0)),
+        format!("{:.0}", ln_p(1)),
+        format!("{:.2}", 100.0 * deformation.worst_part),
+        format!("{:.1}", deformation.worst_turn),
+        deformation.num_turned_over.to_string(),
+        format!("{seconds:.1}"),
+    ];
+    let scratch =
+        std::env::temp_dir().join(format!("meshmark-wild-{}-{purpose}", std::process::id()));
+    for column in columns {
+        let suspect = column.apply(&marked, &after, &scratch);
+        cells.push(suspect.map_or_else(|said| said, |bytes| found(&bytes, &key, payload)));
+    }
+    Ok(cells)
+}
+
+/// What is said of a suspect: ln p, if its payload is found.
+fn found(bytes: &[u8], key: &Key, payload: Payload) -> String {
+    match detect(bytes, key, None) {
+        Err(error) => error.code().to_owned(),
+        Ok(answer) if answer.verdict != Verdict::Found => "lost".to_owned(),
+        Ok(answer) if answer.number != Some(payload.number()) => "another".to_owned(),
+        Ok(answer) => format!("{:.0}", answer.details().ln_p),
+    }
+}
+
+/// Every .glb and .gltf in a folder and its folders.
+fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), String> {
+    let entries = std::fs::read_dir(folder);
+    for entry in entries.map_err(|error| format!("{}: {error}", folder.display()))? {
+        let path = entry.map_err(|error| error.to_string())?.path();
+        if path.is_dir() {
+            collect(&path, paths)?;
+        } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}

@@ -7,6 +7,7 @@ use meshmark::internals::carrier::direction::NUM_TESTS;
 use meshmark::internals::carrier::{Measurement, Reading, ring, solid};
 use meshmark::internals::code::{Block, Checked, Codeword, SoftSymbol, Symbol};
 use meshmark::internals::detection::{Statistic, union};
+use meshmark::internals::geometry::Pieces;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::progress::ignore;
 use meshmark::{Evidence, Key, Payload, extract, verify};
@@ -257,6 +258,19 @@ fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
     hold_surfaces(name, &plain, keys);
 }
 
+/// Keys against a mesh and each of its pieces alone, as they are.
+fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
+    let Pieces { objects, parts } = Pieces::of(mesh);
+    assert!(!objects.is_empty() && !parts.is_empty(), "{name}");
+    let pieces = objects
+        .into_iter()
+        .chain(parts)
+        .map(|piece| mesh.part(piece));
+    let all = std::iter::once(mesh.clone()).chain(pieces);
+    let plain = all.flat_map(|piece| solid::Surfaces::new(&piece).plain());
+    hold_surfaces(name, &plain.collect(), keys);
+}
+
 /// A commit tries so many keys on each surface; `cargo xtask test --all` tries more.
 const KEYS: u64 = 200;
 const ALL_KEYS: u64 = 1_000;
@@ -279,6 +293,23 @@ fn mirrored_pair() -> Mesh {
         .map(|p| DVec3::new(3.0 - p.x, p.y, p.z));
     let other = turned(half.with_positions(mirrored.collect()));
     Mesh::joined([half, other])
+}
+
+/// The same rock four times, one of them mirrored and one with a stone on it: pieces that share every address.
+fn repeated_rocks() -> Mesh {
+    let rock = shapes::asteroid(12, 18);
+    let stone = rock.positions.iter().map(|p| *p * 0.4 + DVec3::Z);
+    let stone = rock.with_positions(stone.collect());
+    let others = [DVec3::X, DVec3::Y].map(|axis| moved(&rock, axis * 4.0));
+    let both = others
+        .into_iter()
+        .chain([stone, moved(&mirrored_pair(), DVec3::Z * -6.0)]);
+    Mesh::joined(std::iter::once(rock.clone()).chain(both))
+}
+
+#[test]
+fn bound_holds_for_pieces() {
+    hold_pieces("repeated rocks", &repeated_rocks(), KEYS);
 }
 
 #[test]
@@ -320,6 +351,7 @@ fn bound_holds_for_all_keys() {
     hold_mesh("identical boxes", &identical_boxes(), ALL_KEYS);
     hold_mesh("mirrored pair", &mirrored_pair(), ALL_KEYS);
     hold_mesh("doubled sheets", &doubled_sheets(5e-4), ALL_KEYS);
+    hold_pieces("repeated rocks", &repeated_rocks(), ALL_KEYS);
     hold_what_is_undone(ALL_KEYS / 10);
     hold_cells(ALL_KEYS);
 }
@@ -358,6 +390,35 @@ fn charges_are_those_that_are_declared() {
         }
     }
     assert!(num_split > 0, "no search was begun");
+}
+
+/// A whole and its pieces share the probability: the whole has half, each of n pieces 1 / 2n.
+#[test]
+fn shares_of_pieces_add_up_to_one() {
+    let rocks = repeated_rocks();
+    let whole = || solid::Surfaces::new(&rocks).plain();
+    let read =
+        |measurement: solid::Measurement| measurement.read(&random_key(1), &mut ignore).unwrap();
+    let first = |reading: &Reading, piece| {
+        let ways = reading.hypotheses.iter();
+        let of_piece = ways
+            .filter(|way| way.piece == piece)
+            .map(|way| way.ln_num_tests);
+        of_piece.reduce(f64::max)
+    };
+    let alone = first(&read(whole().collect()), 0).unwrap();
+    for num in 1..=3 {
+        let all = (0..=num).flat_map(|_| whole()).collect();
+        let reading = read(all);
+        let share = |piece| libm::exp(alone - first(&reading, piece).unwrap());
+        assert!((share(0) - 0.5).abs() < 1e-9);
+        for piece in 1..=num {
+            assert!(
+                (share(piece) - 0.5 / num as f64).abs() < 1e-9,
+                "{piece} of {num}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -68,6 +68,6 @@ fn golden_terrain() {
 fn golden_gallery() {
     check(
         &gallery(Packing::Glb),
-        ["98c4293e50a09b79", "0d97a1dfe5a44e6c", "9a9e37830b0c62bb"],
+        ["98c4293e50a09b79", "4f7fb577047fb6b0", "7eb6bfc60e020f81"],
     );
 }

@@ -24,6 +24,7 @@ mod models;
 mod note;
 mod paper;
 mod payload;
+mod pieces;
 mod quality;
 mod reports;
 mod ring;

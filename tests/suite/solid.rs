@@ -5,7 +5,7 @@ use glam::DVec3;
 use meshmark::internals::attack::{
     crop, noise, quantize, reorder, similarity, smooth, smooth_inside,
 };
-use meshmark::internals::carrier::solid::{Measurement, num_windows};
+use meshmark::internals::carrier::solid::{Measurement, Surface, Surfaces, num_windows};
 use meshmark::internals::carrier::{Carrier, Host, Mark, StoredError};
 use meshmark::internals::code::Codeword;
 use meshmark::internals::detection::Statistic;
@@ -266,8 +266,20 @@ fn solid_refuses_forged_measurements() {
         other => panic!("{:?}", other.map(drop)),
     };
     assert!(Measurement::from_bytes(&bytes).is_ok());
-    let twice = [bytes.as_slice(), &bytes].concat();
-    assert_eq!(impossible(&twice), "surfaces out of order or twice");
+    let surfaces: Vec<Surface> = Surfaces::new(&rock()).take(3).collect();
+    let [suspect, first, second] = surfaces.try_into().expect("there are three");
+    let twice = Measurement::from_iter([suspect.clone(), first.clone(), first.clone()]);
+    let turned = Measurement::from_iter([suspect, second, first]);
+    for forged in [twice, turned] {
+        assert_eq!(
+            impossible(&forged.to_bytes()),
+            "surfaces out of order or twice"
+        );
+    }
+    assert_eq!(
+        impossible(&bytes.repeat(18)),
+        "more pieces than are looked for"
+    );
     assert_eq!(
         impossible(&with(0, &[2])),
         "surfaces without the suspect's own"

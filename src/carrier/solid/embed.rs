@@ -4,7 +4,7 @@
 //! RING's embedder), and solves the ridge problem ([`Problem`]). The frame is measured again in every round.
 
 use super::cluster::clusters;
-use super::frame::{Axes, axes_of};
+use super::frame::is_determined;
 use super::freedom::{freedoms, typical};
 use super::lattice::{Lattice, Placement};
 use super::pitch::{AREAS, AREAS_TO_EMBED, pitches};
@@ -59,11 +59,7 @@ pub fn embed_in_frame(
     let freedom = freedoms(&mesh, &boundary, host, CLAMPS[0]);
     let typical = typical(&freedom);
     // Where a detector has to scan, the pilots are spent on that, and two thirds of the symbols are left to testify.
-    let all = if axes_of(&pose).contains(&Axes::Undetermined) {
-        1.5
-    } else {
-        1.0
-    };
+    let all = if is_determined(&pose) { 1.0 } else { 1.5 };
     let mut embedder = Embedder {
         host,
         lattice: &Lattice::of(mark.key),

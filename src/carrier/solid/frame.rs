@@ -25,6 +25,11 @@ pub fn axes_of(pose: &Pose) -> [Axes; 2] {
     [apart(x, y), apart(y, z)]
 }
 
+/// Whether every axis is told apart from the others.
+pub fn is_determined(pose: &Pose) -> bool {
+    !axes_of(pose).contains(&Axes::Undetermined)
+}
+
 /// The rotations that take a frame into itself: 4 if its axes are known but for their signs, else 24.
 pub fn turns(near: bool) -> Vec<DMat3> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];

@@ -1,8 +1,9 @@
 //! Embedding in a scene: each of its objects has the mark in its own frame, and keeps it when it is taken out.
 
 use super::embed::embed_in_frame;
+use super::frame::is_determined;
 use crate::carrier::{CarrierError, Host, Mark};
-use crate::geometry::{Piece, Pieces};
+use crate::geometry::{Piece, Pieces, Pose};
 use crate::mesh::{Admissible, Orbit};
 use crate::progress::Progress;
 use glam::DVec3;
@@ -77,6 +78,10 @@ impl<'a> Marked<'a> {
             .count();
         if 2 * num_moved > vertices.len() {
             self.num_marked += vertices.len();
+            return Ok(());
+        }
+        // A detector scans for axes in one piece at most.
+        if !Pose::of_surface(&mesh).is_some_and(|pose| is_determined(&pose)) {
             return Ok(());
         }
         let admissible = self.admissible_in(&vertices);

@@ -1,0 +1,152 @@
+//! Scenes of several objects: what is one, and that a mark is found in what was taken out of a scene or put into one.
+
+use crate::support::fixtures::{cuboid, key, payload};
+use glam::{DQuat, DVec3};
+use meshmark::internals::attack::{similarity, simplify};
+use meshmark::internals::document::Document;
+use meshmark::internals::geometry::Pieces;
+use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{Carrier, EmbedOptions, Extraction, Strength, Verdict, detect, embed};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn moved(mesh: &Mesh, size: f64, by: DVec3) -> Mesh {
+    mesh.with_positions(mesh.positions.iter().map(|p| *p * size + by).collect())
+}
+
+/// Two triangles.
+fn floor(height: f64) -> Mesh {
+    let corner = |x: f64, y: f64| DVec3::new(5.0 * x, 5.0 * y, height);
+    Mesh {
+        positions: vec![
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }
+}
+
+/// A figure of two parts that touch, and a stone beside it.
+fn figure_and_stone() -> Mesh {
+    let body = shapes::asteroid(24, 36);
+    let hat = moved(&shapes::asteroid(12, 18), 0.3, DVec3::Z * 1.05);
+    let stone = moved(&shapes::asteroid(10, 14), 0.4, DVec3::new(3.0, 0.5, -0.5));
+    Mesh::joined([body, hat, stone])
+}
+
+fn sizes(pieces: &[Vec<[u32; 3]>]) -> Vec<usize> {
+    pieces.iter().map(Vec::len).collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_are_what_touches_and_its_parts() {
+    let [body, hat, stone] =
+        [(24, 36), (12, 18), (10, 14)].map(|(a, b)| shapes::asteroid(a, b).triangles.len());
+    let scene = figure_and_stone();
+    let turned = DQuat::from_scaled_axis(DVec3::new(0.3, 1.1, -0.4));
+    let positions = scene.positions.iter().map(|p| turned * *p * 7.0);
+    let with_floor = Mesh::joined([scene.clone(), floor(-1.0)]);
+    for (name, scene) in [
+        ("as it is", scene.clone()),
+        ("turned", scene.with_positions(positions.collect())),
+        ("on a floor", with_floor),
+    ] {
+        let pieces = Pieces::of(&scene);
+        assert_eq!(sizes(&pieces.objects), [body + hat, stone], "{name}");
+        assert_eq!(sizes(&pieces.parts), [body, hat], "{name}");
+        assert_eq!(
+            sizes(&Pieces::stable_objects(&scene)),
+            [body + hat, stone],
+            "{name}"
+        );
+    }
+}
+
+/// What is one object is read as a whole: nothing is charged for pieces.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_of_one_object_are_none() {
+    let pieces = Pieces::of(&shapes::asteroid(24, 36));
+    assert!(pieces.objects.is_empty() && pieces.parts.is_empty());
+}
+
+/// Objects that touch only just are not told apart for certain.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_that_hardly_touch_are_not_stable() {
+    let rock = shapes::asteroid(24, 36);
+    let diagonal = meshmark::internals::geometry::diagonal(&rock.positions);
+    let width = rock.positions.iter().map(|p| p.x).fold(0.0, f64::max)
+        - rock.positions.iter().map(|p| p.x).fold(0.0, f64::min);
+    let beside = |gap: f64| {
+        Mesh::joined([
+            rock.clone(),
+            moved(&rock, 1.0, DVec3::X * (width + gap * diagonal)),
+        ])
+    };
+    let num_stable = |gap| Pieces::stable_objects(&beside(gap)).len();
+    assert_eq!(
+        [num_stable(0.5), num_stable(-0.5)],
+        [2, 0],
+        "far apart; one in the other"
+    );
+    let gaps = (0..40).map(|step| 0.005 * f64::from(step) - 0.1);
+    let unsure =
+        gaps.filter(|&gap| !Pieces::of(&beside(gap)).objects.is_empty() && num_stable(gap) == 0);
+    assert!(unsure.count() > 0, "the limit was not met");
+}
+
+fn marked(mesh: &Mesh) -> Mesh {
+    let options = EmbedOptions::default().with_strength(Strength::STRONG);
+    let marked = embed(&to_glb(mesh), payload(), &key(1), &options).unwrap();
+    Scene::gather(&Document::read(&marked.model, &Default::default()).unwrap())
+        .unwrap()
+        .mesh
+}
+
+/// SOLID's piece, where SOLID found the payload.
+fn found(suspect: &Mesh) -> Option<Option<usize>> {
+    let found: Extraction = detect(&to_glb(suspect), &key(1), None).unwrap();
+    let carriers = found.details().carriers.iter();
+    let mut solid = carriers.filter(|reading| reading.name == Carrier::Solid);
+    let solid = solid.find(|reading| reading.number == Some(payload().number()))?;
+    (found.verdict == Verdict::Found).then_some(solid.piece)
+}
+
+/// A model beside, in, on and under what is not its owner's, then simplified to half: RING is gone, and the frame of all is another.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_hold_the_mark_of_a_model_among_others() {
+    let model = marked(&shapes::asteroid(40, 60));
+    let inside = moved(&shapes::cad_part(), 0.25, DVec3::new(0.1, 0.0, 0.05));
+    let beside = moved(&shapes::torus_knot(60, 12), 0.7, DVec3::new(1.5, 2.5, 0.3));
+    let room = moved(&cuboid(DVec3::splat(2.0)), 4.0, DVec3::splat(-4.0));
+    for (name, other) in [
+        ("a floor", floor(-1.1)),
+        ("a hidden part", inside),
+        ("a second model", beside),
+        ("a room", room),
+    ] {
+        let suspect = simplify(&Mesh::joined([model.clone(), other]), 0.5);
+        assert_eq!(found(&similarity(&suspect, 5)), Some(Some(1)), "{name}");
+    }
+}
+
+/// Each object of a scene has the mark, and keeps it when it is taken out.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_hold_the_mark_of_their_scene() {
+    let rock = shapes::asteroid(36, 54);
+    let pebble = rock
+        .positions
+        .iter()
+        .map(|p| *p * DVec3::new(0.4, 0.6, 0.5) + DVec3::X * 5.0);
+    let objects = [
+        shapes::asteroid(40, 60),
+        rock.with_positions(pebble.collect()),
+    ];
+    let scene = marked(&Mesh::joined(objects));
+    assert_eq!(found(&similarity(&scene, 6)), Some(Some(1)));
+    for object in Pieces::of(&scene).objects {
+        let alone = simplify(&scene.part(object), 0.5);
+        assert_eq!(found(&similarity(&alone, 7)), Some(None));
+    }
+}

@@ -8,7 +8,8 @@ use meshmark::internals::geometry::Deformation;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    EmbedOptions, Error, Files, Key, Model, Payload, Strength, Verdict, detect, embed, file_names,
+    EmbedOptions, Error, Files, Key, Model, Payload, SceneError, Strength, Verdict, detect, embed,
+    file_names,
 };
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -196,8 +197,8 @@ fn line(
         bytes: marking.model,
         files,
     };
-    let (mesh, after) = (host.mesh()?, marked.mesh()?);
-    let deformation = Deformation::between(&mesh, &after.positions);
+    let deformation = deformation(&host, &marked)?;
+    let after = marked.mesh()?;
     let report = &marking.report;
     let ln_p = |place: usize| {
         let carriers = &report.read_back.details().carriers;
@@ -219,6 +220,14 @@ fn line(
         cells.push(suspect.map_or_else(|said| said, |bytes| found(&bytes, &key, payload)));
     }
     Ok(cells)
+}
+
+/// What was done to a host.
+fn deformation(host: &Opened, marked: &Opened) -> Result<Deformation, String> {
+    let said = |error: SceneError| error.code().to_owned();
+    let scene = Scene::gather(&host.document()?).map_err(said)?;
+    let after = scene.positions_in(&marked.document()?).map_err(said)?;
+    Ok(Deformation::between(&scene.mesh, &after))
 }
 
 /// What is said of a suspect: ln p, if its payload is found.

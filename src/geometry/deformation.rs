@@ -1,7 +1,7 @@
 //! What is seen of a movement: parts that lose their shape, triangles that turn.
 
+use super::Parts;
 use super::facet::{Facet, twice_area};
-use super::{Parts, diagonal};
 use crate::mesh::Mesh;
 use glam::DVec3;
 
@@ -20,14 +20,14 @@ pub struct Deformation {
 impl Deformation {
     /// Compares a mesh with itself after its V vertices went to other positions.
     pub fn between(mesh: &Mesh, after: &[DVec3]) -> Deformation {
-        let whole = diagonal(&mesh.positions);
+        let parts = Parts::new(mesh);
         let mut deformation = Deformation {
-            worst_part: worst_part(mesh, after),
+            worst_part: worst_part(mesh, &parts, after),
             ..Deformation::default()
         };
-        for &triangle in &mesh.triangles {
+        for (&triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {
             let corners = mesh.corners(triangle);
-            let facet = Facet::of(corners, whole);
+            let facet = Facet::of(corners, parts.diagonals[part as usize]);
             if facet == Facet::Flat {
                 continue;
             }
@@ -43,8 +43,7 @@ impl Deformation {
     }
 }
 
-fn worst_part(mesh: &Mesh, after: &[DVec3]) -> f64 {
-    let parts = Parts::new(mesh);
+fn worst_part(mesh: &Mesh, parts: &Parts, after: &[DVec3]) -> f64 {
     // Each corner counts, so a vertex as often as it has triangles: the mean moves with the surface.
     let mut sums = vec![(DVec3::ZERO, 0.0); parts.diagonals.len()];
     let moves = || {

@@ -5,8 +5,7 @@ use glam::DVec3;
 /// A triangle whose lowest altitude is a smaller part of its longest side than this is a sliver: little of its own normal is seen.
 const SLIVER: f64 = 0.05;
 
-/// A triangle whose lowest altitude is a smaller part of the mesh's diagonal than this has no direction: rounding to a file's numbers
-/// turns it.
+/// A triangle whose lowest altitude is a smaller fraction of its part's diagonal than this has no direction: it is a line to the eye.
 const FLAT: f64 = 1e-6;
 
 /// What a triangle is like.
@@ -21,7 +20,7 @@ pub enum Facet {
 }
 
 impl Facet {
-    /// Of corners, in a mesh of a diagonal.
+    /// Of corners, in a part of a diagonal.
     pub fn of([a, b, c]: [DVec3; 3], diagonal: f64) -> Facet {
         let twice_area = (b - a).cross(c - a).length();
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

@@ -1,7 +1,7 @@
 //! How far each vertex of a mesh may move, whatever moves it: by the part of the surface that it is in, and by its triangles.
 
+use super::Parts;
 use super::facet::{Facet, twice_area};
-use super::{Parts, diagonal};
 use crate::mesh::{Admissible, Mesh};
 use glam::DVec3;
 
@@ -57,7 +57,6 @@ impl<'a> Leeway<'a> {
     /// Looks at a mesh. O(V + F log D), D the most triangles at a vertex.
     pub fn new(mesh: &'a Mesh, bounds: Bounds) -> Leeway<'a> {
         let parts = Parts::new(mesh);
-        let whole = diagonal(&mesh.positions);
         let mut reaches = vec![f64::INFINITY; mesh.positions.len()];
         for (triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {
             for &vertex in triangle {
@@ -65,11 +64,15 @@ impl<'a> Leeway<'a> {
                 *reach = reach.min(bounds.part * parts.diagonals[part as usize]);
             }
         }
-        let facet = |&triangle: &[u32; 3]| Facet::of(mesh.corners(triangle), whole);
+        let facet = |(&triangle, &part): (&[u32; 3], &u32)| {
+            Facet::of(mesh.corners(triangle), parts.diagonals[part as usize])
+        };
         Leeway {
             mesh,
             reaches,
-            facets: mesh.triangles.iter().map(facet).collect(),
+            facets: (mesh.triangles.iter().zip(&parts.of_triangles))
+                .map(facet)
+                .collect(),
             bounds,
         }
     }

@@ -1,10 +1,11 @@
 //! Document -> Scene.
 
-use super::{Count, Placement, Scene, SceneError, orbits};
+use super::{Count, Placement, Scene, SceneError, inverse, orbits};
 use crate::document::{Document, Node, Primitive, Transform};
+use crate::geometry::seams;
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::collections::BTreeMap;
 
 impl Scene {
@@ -43,10 +44,10 @@ impl Scene {
 }
 
 /// A node that shows a mesh.
-struct Placed {
+pub(super) struct Placed {
     node: usize,
-    mesh: usize,
-    to_world: DAffine3,
+    pub(super) mesh: usize,
+    pub(super) to_world: DAffine3,
 }
 
 /// A primitive with triangles.
@@ -74,7 +75,7 @@ fn drawn_parts(document: &Document) -> Vec<Vec<Part>> {
 }
 
 /// Every node that shows a mesh, with its transform to world space: depth first, in the document's order.
-fn placed_nodes(document: &Document) -> Vec<Placed> {
+pub(super) fn placed_nodes(document: &Document) -> Vec<Placed> {
     let nodes = document.nodes();
     let mut placed = Vec::new();
     let mut open: Vec<(usize, DAffine3)> = document
@@ -271,47 +272,74 @@ impl Gathering {
             }
         }
         drop((order, first, vertices, self.worlds));
-        let triangles: Vec<[u32; 3]> = self
-            .triangles
-            .into_iter()
-            .filter_map(|(placement, triangle)| {
-                welded(self.placements.get(placement as usize)?, triangle)
-            })
-            .collect();
-        if triangles.is_empty() {
+        let triangles = self.triangles.into_iter();
+        let triangles = triangles.filter_map(|(placement, triangle)| {
+            let placement = self.placements.get(placement as usize)?;
+            renamed(triangle, |element| placement.vertex(element))
+        });
+        let mut mesh = Mesh {
+            triangles: triangles.collect(),
+            positions,
+        };
+        let is_parted = close_seams(&mut mesh, &mut self.placements);
+        if mesh.triangles.is_empty() {
             return Err(SceneError::NoTriangles);
         }
-        let admissible = orbits::admissible(document, &self.placements, positions.len())?;
-        Ok(Scene {
-            mesh: Mesh {
-                positions,
-                triangles,
-            },
+        let admissible = orbits::admissible(document, &self.placements, mesh.positions.len())?;
+        let mut scene = Scene {
+            mesh,
             admissible,
             placements: self.placements,
-        })
+        };
+        if is_parted {
+            scene.mesh.positions = scene.positions_in(document)?;
+        }
+        Ok(scene)
     }
 }
 
-/// The triangle's vertices, if they are three.
-fn welded(placement: &Placement, [a, b, c]: [u32; 3]) -> Option<[u32; 3]> {
-    let vertex = |element: u32| *placement.vertices.get(element as usize)?;
-    let [a, b, c] = [vertex(a)?, vertex(b)?, vertex(c)?];
+/// Makes one vertex of those that a person sees as one; says whether there were any.
+fn close_seams(mesh: &mut Mesh, placements: &mut [Placement]) -> bool {
+    let seams = seams(mesh);
+    if seams.is_empty() {
+        return false;
+    }
+    let mut leaders: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    for (vertex, first) in seams {
+        if let Some(leader) = leaders.get_mut(vertex as usize) {
+            *leader = first;
+        }
+    }
+    // A leader is no later than its vertex, so it has its new name already.
+    let mut names: Vec<u32> = Vec::with_capacity(leaders.len());
+    let mut positions = Vec::new();
+    for ((&leader, &position), vertex) in leaders.iter().zip(&mesh.positions).zip(0..) {
+        names.push(if leader == vertex {
+            positions.push(position);
+            positions.len() as u32 - 1
+        } else {
+            names.get(leader as usize).copied().unwrap_or_default()
+        });
+    }
+    let name = |vertex: u32| names.get(vertex as usize).copied();
+    let triangles = mesh.triangles.iter();
+    mesh.triangles = triangles
+        .filter_map(|&triangle| renamed(triangle, name))
+        .collect();
+    mesh.positions = positions;
+    for vertex in placements.iter_mut().flat_map(|p| &mut p.vertices) {
+        *vertex = vertex.and_then(name);
+    }
+    true
+}
+
+/// A triangle by other names, if they are three.
+fn renamed([a, b, c]: [u32; 3], name: impl Fn(u32) -> Option<u32>) -> Option<[u32; 3]> {
+    let [a, b, c] = [name(a)?, name(b)?, name(c)?];
     (a != b && b != c && c != a).then_some([a, b, c])
 }
 
 /// A position's bits, with one zero.
 fn bits(position: DVec3) -> [u64; 3] {
     (position + DVec3::ZERO).to_array().map(f64::to_bits)
-}
-
-/// The inverse of a matrix that has a usable one.
-fn inverse(matrix: DMat3) -> Option<DMat3> {
-    let scale = matrix
-        .to_cols_array()
-        .iter()
-        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
-    let inverse = matrix.inverse();
-    (matrix.determinant().abs() > 1e-12 * scale * scale * scale && inverse.is_finite())
-        .then_some(inverse)
 }

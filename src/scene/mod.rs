@@ -1,13 +1,15 @@
 //! Document <-> welded world-space mesh, and the map back to every accessor element.
 //!
-//! Rules: corners weld where their world positions agree bit by bit, so that all copies of a vertex at a UV seam are one
-//! vertex and move as one. Every node that places a mesh adds an instance; a shared vertex has one displacement, which moves
-//! all its instances. Skinned meshes stay as they are modelled (the bind pose). Morph targets are deltas and stay as they
-//! are. Triangles with fewer than three distinct corners are dropped. Only elements that a triangle uses become vertices.
+//! Rules: corners weld where their world positions agree bit by bit, and where a codec or an exporter parted them by a little
+//! (`geometry::seams`), so that all copies of a vertex at a seam are one vertex and move as one. Every node that places a mesh
+//! adds an instance; a shared vertex has one displacement, which moves all its instances. Skinned meshes stay as they are
+//! modelled (the bind pose). Morph targets are deltas and stay as they are. Triangles with fewer than three distinct corners
+//! are dropped. Only elements that a triangle uses become vertices; points and lines that lie on the surface move with it.
 
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing)]
 
 mod count;
+mod follow;
 mod gather;
 mod orbits;
 mod plain;
@@ -106,4 +108,22 @@ struct Placement {
     to_local: Option<DMat3>,
     /// The vertex of each element; `None` for elements that no triangle uses.
     vertices: Vec<Option<u32>>,
+}
+
+impl Placement {
+    /// The vertex of an element.
+    fn vertex(&self, element: u32) -> Option<u32> {
+        *self.vertices.get(element as usize)?
+    }
+}
+
+/// The inverse of a matrix that has a usable one.
+fn inverse(matrix: DMat3) -> Option<DMat3> {
+    let scale = matrix
+        .to_cols_array()
+        .iter()
+        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    let inverse = matrix.inverse();
+    (matrix.determinant().abs() > 1e-12 * scale * scale * scale && inverse.is_finite())
+        .then_some(inverse)
 }

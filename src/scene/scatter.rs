@@ -1,5 +1,6 @@
 //! Scene -> Document: displacements back to every element, positions from a changed document.
 
+use super::follow::followers;
 use super::uses::uses;
 use super::{Scene, SceneError};
 use crate::document::Document;
@@ -16,7 +17,8 @@ impl Scene {
     ) -> Result<(), SceneError> {
         // By accessor, so that each is read and stored once, however often it is shown.
         let mut moves: BTreeMap<usize, Vec<(u32, DVec3)>> = BTreeMap::new();
-        for uses in uses(document, &self.placements)?.chunk_by(|a, b| a.slot == b.slot) {
+        let uses = uses(document, &self.placements)?;
+        for uses in uses.chunk_by(|a, b| a.slot == b.slot) {
             // The displacement is admissible, so all uses of an element agree about it: the first moves it.
             let Some(first) = uses.first() else { continue };
             let placement = self.placements.get(first.placement as usize);
@@ -26,6 +28,10 @@ impl Scene {
                 let moves = moves.entry(placement.accessor).or_default();
                 moves.push((first.element, to_local * *d));
             }
+        }
+        for follower in followers(self, document, &uses, displacement)? {
+            let moves = moves.entry(follower.accessor).or_default();
+            moves.push((follower.element, follower.displacement));
         }
         for (accessor, moves) in moves {
             let mut positions = document.positions(accessor)?;
@@ -39,19 +45,24 @@ impl Scene {
         Ok(())
     }
 
-    /// Where a document that differs in positions only has the vertices of this scene.
+    /// Where a document that differs in positions only has the vertices of this scene: each where its first element is.
     pub fn positions_in(&self, document: &Document) -> Result<Vec<DVec3>, SceneError> {
-        let mut positions = self.mesh.positions.clone();
+        let mut positions = vec![None; self.mesh.positions.len()];
         for placement in &self.placements {
             let locals = document.positions(placement.accessor)?;
             for (vertex, local) in placement.vertices.iter().zip(locals) {
                 if let Some(slot) = vertex.and_then(|vertex| positions.get_mut(vertex as usize)) {
-                    *slot = placement
-                        .to_world
-                        .transform_point3(DVec3::from_array(local));
+                    slot.get_or_insert_with(|| {
+                        let local = DVec3::from_array(local);
+                        placement.to_world.transform_point3(local)
+                    });
                 }
             }
         }
-        Ok(positions)
+        // Every vertex has an element.
+        Ok(positions
+            .into_iter()
+            .map(Option::unwrap_or_default)
+            .collect())
     }
 }

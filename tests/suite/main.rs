@@ -30,6 +30,7 @@ mod reports;
 mod ring;
 mod robustness;
 mod scene;
+mod seams;
 mod smoothing;
 mod solid;
 mod support;

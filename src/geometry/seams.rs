@@ -1,0 +1,77 @@
+//! Which vertices a person sees as one: those that rounding parted, and those that a codec or an exporter parted along a seam.
+//!
+//! It depends on the mesh alone, so that an embedder and a detector see one surface. No vertex reaches farther than a share of its
+//! shortest side, so no triangle is lost by it; and the two sides of a thin plate stay apart, for they are one part without an edge.
+
+use super::diagonal;
+use super::merge::{crowded, merged};
+use crate::mesh::{Edges, Mesh};
+
+/// What any two vertices are one within, as a fraction of the diagonal ...
+const ROUNDED: f64 = 1e-6;
+/// ... and no more than this fraction of the mean side: something small in a large scene stays what it is.
+const OF_MEAN_SIDE: f64 = 1e-2;
+
+/// What vertices are one within, as fractions of the diagonal: the greatest of these that is within a share of their shortest sides.
+const PARTED: [f64; 5] = [1.25e-5, 2.5e-5, 5e-5, 1e-4, 2e-4];
+/// Less than half, so that no third vertex is near two corners of a triangle.
+const SHARE: f64 = 0.45;
+
+/// The vertices that are one with an earlier vertex, each with that one, in rising order. O(V log V + F).
+pub fn seams(mesh: &Mesh) -> Vec<(u32, u32)> {
+    let whole = diagonal(&mesh.positions);
+    let rounded = (ROUNDED * whole).min(OF_MEAN_SIDE * mesh.mean_edge());
+    if rounded <= 0.0 {
+        return Vec::new();
+    }
+    let parted = PARTED.map(|share| share * whole);
+    let near = crowded(&mesh.positions, parted[parted.len() - 1]);
+    if near.is_empty() {
+        return Vec::new();
+    }
+    let shortest = shortest_sides(mesh);
+    let class = |vertex: u32| {
+        let fits = |reach: &&f64| **reach <= SHARE * shortest[vertex as usize];
+        parted.iter().filter(fits).count() as u8
+    };
+    let points: Vec<(u32, u8)> = near.into_iter().map(|v| (v, class(v))).collect();
+    let reaches: Vec<f64> = [rounded].into_iter().chain(parted).collect();
+    let (parts, open) = parts_and_open(mesh);
+    merged(&mesh.positions, &points, &reaches, |vertex, other| {
+        let (vertex, other) = (vertex as usize, other as usize);
+        parts[vertex] != parts[other]
+            || open[vertex] && open[other]
+            || mesh.positions[vertex].distance(mesh.positions[other]) <= rounded
+    })
+}
+
+/// For each vertex the first part that it is in, and whether it has an edge with one triangle.
+fn parts_and_open(mesh: &Mesh) -> (Vec<u32>, Vec<bool>) {
+    let edges = Edges::new(mesh);
+    let mut parts = vec![u32::MAX; mesh.positions.len()];
+    for (triangle, part) in mesh.triangles.iter().zip(edges.components()) {
+        for &vertex in triangle {
+            let known = &mut parts[vertex as usize];
+            *known = part.min(*known);
+        }
+    }
+    let mut open = vec![false; mesh.positions.len()];
+    for (from, to) in edges.boundary(&mesh.triangles) {
+        open[from as usize] = true;
+        open[to as usize] = true;
+    }
+    (parts, open)
+}
+
+/// The shortest side at each vertex; infinite without triangles.
+fn shortest_sides(mesh: &Mesh) -> Vec<f64> {
+    let mut shortest = vec![f64::INFINITY; mesh.positions.len()];
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)].map(|(a, b)| (a as usize, b as usize)) {
+            let side = mesh.positions[from].distance(mesh.positions[to]);
+            shortest[from] = shortest[from].min(side);
+            shortest[to] = shortest[to].min(side);
+        }
+    }
+    shortest
+}

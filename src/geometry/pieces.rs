@@ -1,9 +1,9 @@
 //! The pieces of a scene: what may have been a model of its own, told from the surface alone.
 //!
-//! A part is what hangs together by vertices. Parts whose boxes touch make an object: a figure and what it holds, a table's top and its
+//! Parts whose boxes touch make an object: a figure and what it holds, a table's top and its
 //! legs. Neither depends on where the scene lies, on names or on nodes, so pieces are the same after joining, flattening and turning.
 
-use super::Pose;
+use super::{Parts, Pose};
 use crate::mesh::{Mesh, Sets};
 use glam::DVec3;
 use std::cmp::Reverse;
@@ -73,18 +73,12 @@ fn largest(pieces: impl Iterator<Item = Piece>, mesh: &Mesh) -> Vec<Piece> {
     pieces
 }
 
-/// What hangs together by vertices, most triangles first, no more than are compared; of equally many in the order of their first
-/// triangles.
+/// The triangles of each part, most first, no more parts than are compared; of equally many in the order of their first triangles.
 fn parts(mesh: &Mesh) -> Vec<Piece> {
-    let mut sets = Sets::new(mesh.positions.len());
-    for &[a, b, c] in &mesh.triangles {
-        sets.join(a, b);
-        sets.join(a, c);
-    }
+    let of_triangles = Parts::new(mesh).of_triangles;
     let mut parts: BTreeMap<u32, Piece> = BTreeMap::new();
-    for triangle in &mesh.triangles {
-        let part = parts.entry(sets.find(triangle[0])).or_default();
-        part.push(*triangle);
+    for (&triangle, part) in mesh.triangles.iter().zip(of_triangles) {
+        parts.entry(part).or_default().push(triangle);
     }
     let mut parts: Vec<Piece> = parts.into_values().collect();
     parts.sort_by_key(|part| Reverse(part.len()));

@@ -53,6 +53,11 @@ export interface CarrierReading {
   /** The payload as a tag and as a number; `null` where this carrier alone does not find one. */
   tag: string | null;
   number: number | null;
+  /**
+   * Which piece of the model it was read in, alone: 1 is the first. Objects come before their parts, and what has more triangles before what
+   * has fewer. `null` where it was the whole, and where nothing was found.
+   */
+  piece: number | null;
   /** Agreement of the symbols with that payload, weighted: 1 is perfect, 0 is chance. */
   agreement: number;
   /** Places for symbols that were there to be read, and how many of them are this key's. */

@@ -89,7 +89,7 @@ test("progress names declared stages, with fractions from 0 to 1", () => {
 });
 
 test("the comparison sees what is missing, undeclared and of another type", () => {
-  const carrier = { name: "ring", lnP: -1, tag: null, number: null, agreement: 0.5, addresses: 1, ownedAddresses: 1 };
+  const carrier = { name: "ring", lnP: -1, tag: null, number: null, piece: null, agreement: 0.5, addresses: 1, ownedAddresses: 1 };
   assert.deepEqual(contract.differences("CarrierReading", carrier), []);
   const { lnP: _, ...without } = carrier;
   for (const wrong of [without, { ...carrier, extra: 1 }, { ...carrier, name: "other" }, { ...carrier, tag: 3 }, { ...carrier, lnP: NaN }, new Map()]) {

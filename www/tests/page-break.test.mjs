@@ -55,7 +55,7 @@ unseen("the mark just made is attacked, once and in a chain, by hand and over th
   await done(basename(copy));
   assert.equal(await came(basename(copy)), await came(chain));
   await drop(onDisk("notes.txt", "nothing"));
-  await view().getByText("Cannot open: There is no .glb or .gltf file in this.").waitFor();
+  await view().getByText("Cannot open: There is no .glb, .gltf or .vrm file in this.").waitFor();
   await drop(onDisk("nothing.glb", "glTF but no more"));
   await row("nothing.glb").getByText(/^Failed: /).waitFor();
 

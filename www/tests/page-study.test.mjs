@@ -57,5 +57,5 @@ unseen("what is wrong with a study is said in words", async () => {
   await view().getByText("Give a whole number from 1 to 8.").waitFor();
   await hosts.fill("8");
   await button("Measure Table I and Fig. 5").click();
-  await view().getByText(/^Not measured: /).waitFor(); // a cube has no thousand hosts
+  await result().getByText(/^Cannot study: /).waitFor(); // a cube has no thousand hosts
 });

@@ -19,7 +19,7 @@ let server;
 let browser;
 export let context;
 export let page;
-/** What must stay empty: requests to elsewhere, policy violations, script errors, dialogs. */
+/** What must stay empty: requests to elsewhere, policy violations, script errors, dialogs but the one before leaving. */
 let offences;
 
 before(async () => {
@@ -66,6 +66,7 @@ async function open({ webgl = true, ...options }) {
   await context.addInitScript(() => {
     globalThis.violations = [];
     globalThis.asked = []; // what workers were asked to do
+    globalThis.held = null; // what they do not come to hear of, so that it goes on until it is ended
     globalThis.workers = new Set(); // those that were not ended
     globalThis.Worker = class extends Worker {
       constructor(...args) {
@@ -74,7 +75,9 @@ async function open({ webgl = true, ...options }) {
       }
       postMessage(message, ...rest) {
         asked.push(message.name);
-        super.postMessage(message, ...rest);
+        if (message.name !== held) {
+          super.postMessage(message, ...rest);
+        }
       }
       terminate() {
         workers.delete(this);
@@ -94,7 +97,7 @@ async function open({ webgl = true, ...options }) {
   page = await context.newPage();
   page.setDefaultTimeout(SLOW);
   page.on("pageerror", (error) => offences.push(`error ${error.message}`));
-  page.on("dialog", (dialog) => offences.push(`dialog ${dialog.message()}`));
+  page.on("dialog", (dialog) => dialog.type() !== "beforeunload" && offences.push(`dialog ${dialog.message()}`));
   page.on("console", (message) => /content security policy/i.test(message.text()) && offences.push(message.text()));
   await page.goto(server.origin);
 }
@@ -115,13 +118,17 @@ export function onDisk(name, bytes) {
 }
 
 export const view = () => page.locator(".view:visible");
-export const result = () => view().locator(".result");
+/** What was said or finished last. */
+export const result = () => view().locator(".result").first();
 export const headline = () => result().getByRole("heading", { level: 2 }).textContent();
 export const facts = () => view().locator(".facts");
 export const canvas = () => view().getByRole("application");
 export const button = (name) => view().getByRole("button", { name, exact: true });
 export const picture = (name) => page.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
 export const pictureOf = (locator, name) => locator.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
+
+/** From now on workers do not hear of a function: what calls it goes on until it is ended. `null`: they hear of all. */
+export const hold = (name) => page.evaluate((name) => void (globalThis.held = name), name);
 
 /** Waits until so many workers are at work. */
 export const workersAre = (count) => page.waitForFunction((count) => workers.size === count, count);
@@ -174,24 +181,34 @@ export function isSame(now, before) {
 export async function fillKey(passphrase = PASSPHRASE) {
   await page.getByLabel("Owner’s name").fill(OWNER);
   await page.getByLabel("Passphrase", { exact: true }).and(page.locator("input:not([type=radio])")).fill(passphrase);
+  const again = page.getByLabel("The same passphrase again");
+  if (await again.isVisible()) {
+    await again.fill(passphrase); // where a new one is chosen
+  }
 }
 
 export async function mark(tag = TAG) {
   await fillKey();
   await page.getByLabel("Tag", { exact: true }).fill(tag);
-  await page.getByRole("button", { name: "Mark this model" }).click();
-  await result().waitFor();
+  await submitted("Mark this model");
 }
 
 export async function check(passphrase = PASSPHRASE) {
   await fillKey(passphrase);
-  await page.getByRole("button", { name: "Check this model" }).click();
+  await submitted("Check this model");
+}
+
+/** Presses the button of a form, and waits until what it begins has come to its end. */
+export async function submitted(name) {
+  await button(name).click();
+  await view().locator(".working").waitFor({ state: "detached" });
   await result().waitFor();
 }
 
-/** Presses a button that saves a file; returns where it is. */
-export async function saved(name) {
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+/** Presses a button that saves a file, by its name or itself; returns where it is. */
+export async function saved(control) {
+  const button = typeof control === "string" || control instanceof RegExp ? page.getByRole("button", { name: control }) : control;
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
   const path = join(folder, download.suggestedFilename());
   await download.saveAs(path);
   return path;

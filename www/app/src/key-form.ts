@@ -5,44 +5,81 @@ import { save } from "./save";
 import type { Progress } from "./task";
 
 const KEY_BYTES = 32;
+const DIFFERENT = "The two passphrases differ.";
 
 const root = find<HTMLFieldSetElement>("#key");
 const owner = find<HTMLInputElement>("#owner");
 const passphrase = find<HTMLInputElement>("#passphrase");
+const again = find<HTMLInputElement>("#passphrase-again");
+const strength = find("#passphrase-strength");
 const keyFile = find<HTMLInputElement>("#key-file");
 const state = find("#key-file-state");
 
 /** The key of the file that was chosen, or made here. */
 let fileKey: Uint8Array | undefined;
+/** Whether a passphrase is chosen here, not one that exists: a slip would make a key that nobody has. */
+let isNew = false;
+
+/** Makes the key's 32 bytes, the caller's to overwrite after use. */
+export type KeyMaker = (client: Client, progress: Progress) => Promise<Uint8Array>;
+
+/** A key as the fields said it at one time. */
+export interface KeySource {
+  /** Whose it is; `null` where a key file says no name. */
+  owner: string | null;
+  make: KeyMaker;
+  /** Whether the fields say it still. */
+  isInForm(): boolean;
+}
 
 /** Makes the form ready; it stands in no view yet. `onChange` hears of every other key that it comes to name. */
 export function startKeyForm(onChange: () => void): void {
-  root.addEventListener("change", showSource);
-  root.addEventListener("input", onChange);
+  root.addEventListener("change", () => {
+    showFields();
+    onChange();
+  });
+  root.addEventListener("input", () => {
+    void rate();
+    onChange();
+  });
   keyFile.addEventListener("change", () => void readKeyFile().then(onChange));
   find("#make-key-file").addEventListener("click", () => {
     makeKeyFile();
     onChange();
   });
   owner.addEventListener("input", () => setProblem(owner, null));
-  passphrase.addEventListener("input", () => setProblem(passphrase, null));
+  for (const field of [passphrase, again]) {
+    field.addEventListener("input", () => {
+      setProblem(passphrase, null);
+      setProblem(again, isSlip() && again.value.length >= passphrase.value.length ? DIFFERENT : null);
+    });
+  }
   const show = find("#show-passphrase");
   show.addEventListener("click", () => {
     const visible = passphrase.type === "password";
     passphrase.type = visible ? "text" : "password";
     show.setAttribute("aria-pressed", String(visible));
     show.textContent = visible ? "Hide" : "Show";
+    showFields();
+    onChange();
   });
 }
 
-/** Moves the one key form into a view. */
-export function placeKeyForm(view: Element): void {
+/**
+ * Moves the one key form into a view.
+ *
+ * @param isForNew whether keys are chosen there, not only used
+ */
+export function placeKeyForm(view: Element, isForNew: boolean): void {
+  isNew = isForNew;
   find("[data-key-slot]", view).append(root);
+  showFields();
+  void rate();
 }
 
 /** Whether there is all that a key is made from. */
 export function isKeyComplete(): boolean {
-  return source() === "file" ? fileKey !== undefined : owner.value.trim() !== "" && passphrase.value !== "";
+  return source() === "file" ? fileKey !== undefined : owner.value.trim() !== "" && passphrase.value !== "" && !isSlip();
 }
 
 /** The first field that is not filled in as it should be, told so; `null` where all are. */
@@ -53,25 +90,27 @@ export function incompleteKeyField(): HTMLElement | null {
   }
   setProblem(owner, owner.value.trim() ? null : "Whose mark is it? Give a name.");
   setProblem(passphrase, passphrase.value ? null : "Give the passphrase.");
-  return [owner, passphrase].find((field) => field.getAttribute("aria-invalid") === "true") ?? null;
+  setProblem(again, passphrase.value && isSlip() ? (again.value ? DIFFERENT : "Type it once more, or show it above: a slip would make a key that you do not have.") : null);
+  return [owner, passphrase, again].find((field) => field.getAttribute("aria-invalid") === "true") ?? null;
 }
-
-/** Makes the key's 32 bytes, the caller's to overwrite after use. */
-export type KeyMaker = (client: Client, progress: Progress) => Promise<Uint8Array>;
 
 /** Makes a key that nobody will have again. */
 export const strangerKey: KeyMaker = async () => crypto.getRandomValues(new Uint8Array(KEY_BYTES));
 
-/** Makes the key of what the fields say now, whatever they say later. */
-export function keyMaker(): KeyMaker {
+/** The key of what the fields say now, whatever they say later. */
+export function keySource(): KeySource {
   if (source() === "file") {
-    const key = fileKey!.slice();
-    return async () => key;
+    const key = fileKey!;
+    return { owner: null, make: async () => key.slice(), isInForm: () => source() === "file" && fileKey !== undefined && isSame(fileKey, key) };
   }
   const [name, secret] = [owner.value, passphrase.value];
-  return (client, { signal, stage }) => {
-    stage("key");
-    return client.deriveKey(name, secret, { signal });
+  return {
+    owner: name,
+    make: (client, { signal, stage }) => {
+      stage("key");
+      return client.deriveKey(name, secret, { signal });
+    },
+    isInForm: () => source() === "passphrase" && owner.value === name && passphrase.value === secret,
   };
 }
 
@@ -79,9 +118,30 @@ function source(): string {
   return find<HTMLInputElement>('input[name="key-source"]:checked', root).value;
 }
 
-function showSource(): void {
+/** Whether a new passphrase that is not to be seen was not typed twice alike. */
+function isSlip(): boolean {
+  return isNew && passphrase.type === "password" && again.value !== passphrase.value;
+}
+
+function showFields(): void {
   for (const part of root.querySelectorAll<HTMLElement>("[data-source]")) {
     part.hidden = part.dataset["source"] !== source();
+  }
+  find("#again-field").hidden = !isNew || passphrase.type !== "password";
+}
+
+/** Says how long a new passphrase would stand. */
+async function rate(): Promise<void> {
+  const [name, secret] = [owner.value, passphrase.value];
+  if (!isNew || secret === "") {
+    strength.textContent = "";
+    return;
+  }
+  const { strengthWords } = await import("./passphrase");
+  if (name === owner.value && secret === passphrase.value) {
+    const { words, isWeak } = strengthWords(secret, name);
+    strength.textContent = words;
+    strength.toggleAttribute("data-weak", isWeak);
   }
 }
 
@@ -108,4 +168,8 @@ function makeKeyFile(): void {
   keyFile.value = "";
   setProblem(keyFile, null);
   state.textContent = "A new key was saved as meshmark.key and is in use. Keep a copy where you will find it.";
+}
+
+function isSame(a: Uint8Array, b: Uint8Array): boolean {
+  return a.every((byte, i) => byte === b[i]);
 }

@@ -1,18 +1,22 @@
-/** What all views do: take a model in, show it, say what is wrong with it. */
+/** What all views do: take a model in, show it, say what is wrong with it, work at it. */
 import type { Inspection } from "meshmark";
+import { MeshmarkError } from "meshmark/client";
 import { find } from "./dom";
 import { engine } from "./engine";
-import { modelFrom, type Model, type NamedFile } from "./model";
-import { errorCard, note, present } from "./outcome";
-import type { Showing, StageEvents } from "./stage";
+import { missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
+import { errorCard, note, Outcome } from "./outcome";
+import type { Showing, StageEvents } from "./showing";
+import { Job, type Task } from "./task";
 
 export abstract class View<S extends Showing> {
   readonly form: HTMLFormElement;
   protected readonly stage: S;
-  protected readonly outcome: HTMLElement;
+  protected readonly outcome: Outcome;
   protected model: Model | undefined;
   protected inspection: Inspection | undefined;
-  #running: AbortController | undefined;
+  /** What came with the model: files that it lacks may come later. */
+  #files: NamedFile[] = [];
+  #job: Job | undefined;
 
   constructor(
     readonly root: HTMLElement,
@@ -20,7 +24,7 @@ export abstract class View<S extends Showing> {
     OwnStage: new (view: HTMLElement, events: StageEvents) => S,
   ) {
     this.form = find<HTMLFormElement>("[data-form]", root);
-    this.outcome = find("[data-outcome]", root);
+    this.outcome = new Outcome(find("[data-outcome]", root));
     this.stage = new OwnStage(root, {
       onFiles: (files) => void this.takeFiles(files),
       onDemo: () => void this.takeDemo(),
@@ -32,13 +36,30 @@ export abstract class View<S extends Showing> {
     });
   }
 
-  /** Reads what was dropped or chosen, and takes the model in it. */
+  /** Reads what was dropped or chosen, and takes the model in it, or several. What is no model leaves all as it is. */
   async takeFiles(files: NamedFile[]): Promise<void> {
+    const all = this.#areMissing(files) ? [...files, ...this.#files] : files;
     try {
-      await this.take(await modelFrom(files));
+      const found = modelsIn(all);
+      await (found.length === 1 ? this.take(await found[0]!.open()) : this.takeSeveral(found));
+      this.#files = all;
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
+  }
+
+  /** Whether some of the files are what the model that is shown names and lacks. */
+  #areMissing(files: NamedFile[]): boolean {
+    if (!this.model) {
+      return false;
+    }
+    const { buffers, images } = missingFiles(this.model);
+    const names = [...buffers, ...images].map((uri) => uri.slice(uri.lastIndexOf("/") + 1));
+    return files.some(({ file }) => names.includes(file.name));
+  }
+
+  protected async takeSeveral(found: Found[]): Promise<void> {
+    throw new Error(`There are ${found.length} models in this; drop one of them, with its own files.`);
   }
 
   async takeDemo(): Promise<void> {
@@ -46,24 +67,24 @@ export abstract class View<S extends Showing> {
       const bytes = (await (await engine).demoModel()) as Model["bytes"];
       await this.take({ name: "demo.glb", bytes, buffers: {}, images: {} });
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
   }
 
-  /** Shows a model, ending what was done to the one before. What is wrong with it is said at once, not when it is used. */
+  /** Shows a model, ending what is being done to the one before. What is wrong with it is said at once, not when it is used. */
   async take(model: Model): Promise<void> {
-    this.#running?.abort();
-    this.#running = undefined;
     this.model = model;
     this.inspection = undefined;
-    this.outcome.replaceChildren();
+    this.outcome.tell(this.#stop() ? note("What was going on has been ended: another model came.") : null);
+    this.stage.open(model.name);
+    this.onOther();
     const [inspection, problem] = await this.#inspect(model);
     if (model !== this.model) {
       return; // another one came meanwhile
     }
     this.inspection = inspection;
     if (problem) {
-      present(this.outcome, problem);
+      this.outcome.tell(problem);
     }
     await this.stage.show(model, inspection ?? null);
   }
@@ -82,12 +103,15 @@ export abstract class View<S extends Showing> {
     return null;
   }
 
+  /** Hears that the model, or the key, is another one now: what was finished may be of the one before. */
+  onOther(): void {}
+
   protected close(): void {
-    this.#running?.abort();
-    this.#running = undefined;
+    this.#stop();
     this.model = undefined;
-    this.outcome.replaceChildren();
+    this.outcome.tell(null);
     this.stage.close();
+    this.onOther();
   }
 
   /** The model that is shown, if any. */
@@ -96,40 +120,73 @@ export abstract class View<S extends Showing> {
   }
 
   /** Whether a person waits for something. */
-  protected get isRunning(): boolean {
-    return this.#running !== undefined;
+  get isRunning(): boolean {
+    return this.#job !== undefined;
   }
 
-  /** Does one thing at a time: while it goes on, the form's button rests, and another model ends it. */
-  protected async run(work: (controller: AbortController) => Promise<void>): Promise<void> {
-    if (this.#running) {
-      return;
+  /**
+   * Does one thing at a time, its progress before a person who can cancel it; the form is locked while it goes on, and another model ends it.
+   *
+   * Returns `undefined` where it was cancelled, ended or failed; that has been said.
+   */
+  protected async run<T>(headline: string, work: (task: Task) => Promise<T>): Promise<T | undefined> {
+    if (this.#job) {
+      return undefined;
     }
-    const controller = (this.#running = new AbortController());
-    const button = find('button[type="submit"]', this.form);
-    button.setAttribute("aria-disabled", "true");
+    const job = (this.#job = new Job(headline));
+    this.outcome.tell(null);
+    this.outcome.work(job.card);
+    this.#lock(true);
+    const isOn = () => this.#job === job;
     try {
-      await work(controller);
+      const result = await work(job.task);
+      return isOn() ? result : undefined;
     } catch (error) {
-      present(this.outcome, errorCard(this.cannot, error));
+      if (isOn()) {
+        const isCancelled = error instanceof MeshmarkError && error.code === "aborted";
+        this.outcome.tell(isCancelled ? note("Cancelled. Nothing was changed.") : errorCard(this.cannot, error));
+      }
+      return undefined;
     } finally {
-      if (this.#running === controller) {
-        this.#running = undefined;
-      }
-      if (!this.#running) {
-        button.removeAttribute("aria-disabled");
-      }
-      if (document.activeElement === document.body) {
-        button.focus({ preventScroll: true }); // the focus was on something that is gone, such as Cancel
+      if (isOn()) {
+        this.#stop();
       }
     }
-    this.outcome.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Ends what goes on, if something does; says whether. */
+  #stop(): boolean {
+    const job = this.#job;
+    if (!job) {
+      return false;
+    }
+    this.#job = undefined;
+    job.end();
+    job.card.remove();
+    this.#lock(false);
+    if (document.activeElement === document.body) {
+      this.#submitButton.focus({ preventScroll: true }); // the focus was on something that is gone, such as Cancel
+    }
+    return true;
+  }
+
+  #lock(isLocked: boolean): void {
+    find<HTMLFieldSetElement>("[data-fields]", this.form).disabled = isLocked;
+    if (isLocked) {
+      this.#submitButton.setAttribute("aria-disabled", "true");
+    } else {
+      this.#submitButton.removeAttribute("aria-disabled");
+    }
+  }
+
+  get #submitButton(): HTMLElement {
+    return find('button[type="submit"]', this.form);
   }
 
   /** The model and the focus a form needs before it can be submitted; `null`, with words, where something is missing. */
   protected ready(wrongField: HTMLElement | null): Model | null {
     if (!this.model) {
-      present(this.outcome, note("First drop a model, or choose one."));
+      this.outcome.tell(note("First drop a model, or choose one."));
     }
     wrongField?.focus();
     return this.model && !wrongField ? this.model : null;

@@ -18,9 +18,9 @@ export const CARRIERS: Record<Carrier, { name: string; home: string; survives: s
 /** What is tried on a marked model, to follow "It survives". */
 const ATTACKS: Record<string, string> = {
   none: "no change at all",
-  noise: "noise of 0.1 % of its radius",
-  quantize: "rounding to 11 bits",
-  smooth: "10 steps of smoothing",
+  noise: "noise: each vertex shaken by up to 0.1 % of the model’s radius",
+  quantize: "rounding of positions to 11 bits, as compression does",
+  smooth: "10 light steps of smoothing (in Blender: Smooth, factor 0.1, repeat 10)",
   "simplify-30": "removing 30 % of its triangles",
   "simplify-70": "removing 70 % of its triangles",
   crop: "cutting 30 % of it away",
@@ -88,10 +88,10 @@ export function bytes(n: number): string {
   return n < 1e6 ? `${count(Math.ceil(n / 1e3))} kB` : `${(n / 1e6).toFixed(1)} MB`;
 }
 
-/** What went wrong as a sentence without its full stop, and what a program would call it. */
-export function problem(error: unknown): { text: string; code: string; path: string | null } {
+/** What went wrong as a sentence without its full stop, and what a program would call it, if the package said it. */
+export function problem(error: unknown): { text: string; code: string | null; path: string | null } {
   if (error instanceof MeshmarkError) {
     return { text: error.message.replace(/\.$/, ""), code: error.code, path: error.path };
   }
-  return { text: error instanceof Error ? error.message.replace(/\.$/, "") : String(error), code: "page", path: null };
+  return { text: error instanceof Error ? error.message.replace(/\.$/, "") : String(error), code: null, path: null };
 }

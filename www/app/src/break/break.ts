@@ -1,10 +1,9 @@
 /** Try to break it: a marked model and its key in, and what is left of the mark after whatever is done to it. */
 import { announce, button, find, h } from "../dom";
 import { engine } from "../engine";
-import { incompleteKeyField, isKeyComplete, keyMaker } from "../key-form";
-import { modelFrom, type Model, type NamedFile } from "../model";
-import { card, errorCard, present } from "../outcome";
-import { runTask } from "../task";
+import { incompleteKeyField, isKeyComplete, keySource } from "../key-form";
+import { modelsIn, type Model, type NamedFile } from "../model";
+import { card, errorCard } from "../outcome";
 import { View } from "../view";
 import { VERDICTS } from "../words";
 import { Attempt, type Copy, type Work } from "./attempt";
@@ -71,11 +70,13 @@ export class Break extends View<BreakStage> {
       return super.takeFiles(files);
     }
     try {
-      const model = await modelFrom(files);
-      this.outcome.replaceChildren();
-      this.#ask(this.#made(model.name, "a file of your own", bench.judge(model)));
+      const found = modelsIn(files);
+      this.outcome.tell(null);
+      for (const { name, open } of found) {
+        this.#ask(this.#made(name, "a file of your own", bench.judge(await open())));
+      }
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
   }
 
@@ -95,15 +96,11 @@ export class Break extends View<BreakStage> {
     if (!model) {
       return;
     }
-    const makeKey = keyMaker();
-    await this.run(async (controller) => {
-      const bench = await runTask(this.outcome, controller, async (task) => Bench.open(model, await makeKey(await engine, task), task));
-      if (bench && model === this.model) {
-        this.#open(bench);
-      } else {
-        bench?.close();
-      }
-    });
+    const key = keySource();
+    const bench = await this.run(`Reading ${model.name}`, async (task) => Bench.open(model, await key.make(await engine, task), task));
+    if (bench) {
+      this.#open(bench);
+    }
   }
 
   #open(bench: Bench): void {
@@ -111,7 +108,9 @@ export class Break extends View<BreakStage> {
     if (reading.verdict !== "found" && reading.verdict !== "partial") {
       bench.close();
       const why = "There is nothing to break: mark the model with this key first, or give the key that it was marked with.";
-      present(this.outcome, card(reading.verdict, VERDICTS[reading.verdict], [why]));
+      const nothing = card(reading.verdict, VERDICTS[reading.verdict], [why]);
+      this.outcome.tell(nothing);
+      this.outcome.present(nothing);
       return;
     }
     const every = choices(bench.catalogue);

@@ -88,7 +88,8 @@ unseen("a .gltf with its folder is dropped, marked, and downloaded file by file"
   }
   await drop(scene);
   await facts().getByText("scene.gltf").waitFor();
-  await view().getByText("There is no picture").waitFor();
+  await view().getByText("There is no picture: this browser draws no 3D (it offers no WebGL 2). All else works without it.").waitFor();
+  assert.equal(await view().locator(".toolbar button:enabled").count(), 0, "tools that do nothing can be pressed");
   await mark();
   assert.equal(await headline(), "Your mark is in the copy");
   const gltf = await saved("Download scene.marked.gltf");
@@ -138,6 +139,8 @@ unseen("the carriers can be chosen, and one always stays", async () => {
   assert.match(await warning.textContent(), /^It will not survive removing .* triangles\.$/);
   assert.ok((await warning.boundingBox()).y < (await download.boundingBox()).y, "the warning comes after the download");
   await picture("warning");
+  await button("Mark again, strong").click();
+  assert.equal(await page.getByLabel("Strength").inputValue(), "strong");
 
   await page.getByRole("button", { name: "Check this copy" }).click();
   await facts().getByText("demo.marked.glb").waitFor();

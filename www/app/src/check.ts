@@ -51,7 +51,7 @@ export class Check extends View<Stage> {
         ...(key.isInForm() ? [] : ["another key"]),
         ...(expected === now ? [] : [now === null ? "no tag to look for" : `the tag ${now} to look for`]),
       ];
-      flag(card, others, `This answer is about ${model.name}${key.owner === null ? "" : ` and the mark of ${key.owner}`}.`);
+      flag(card, others, `This answer is about ${model.name}${key.owner === null ? "" : ` and the key of ${key.owner}`}.`);
     }
   }
 

@@ -94,7 +94,7 @@ function announceCard(card: HTMLElement): void {
 export type Row = [term: string, value: Node | string, meaning?: string];
 
 export function numbers(rows: Row[]): HTMLElement {
-  const row = ([term, value, meaning]: Row) => h("div", {}, h("dt", {}, term, ...(meaning ? [h("span", { class: "hint" }, meaning)] : [])), h("dd", {}, value));
+  const row = ([term, value, meaning]: Row) => h("div", {}, h("dt", {}, term), h("dd", {}, value), ...(meaning ? [h("dd", { class: "hint" }, meaning)] : []));
   return h("dl", { class: "numbers" }, ...rows.map(row));
 }
 
@@ -114,7 +114,7 @@ export function readingRows(reading: DetailedExtraction): Row[] {
   return [
     ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
     ["Chance of this without the key", chance(reading.lnP)],
-    ["Agreement", `${Math.round(reading.agreement * 100)} %`, "of what was read with that tag: 100 % is all of it, 0 % is chance"],
+    ["Agreement", `${Math.round(reading.agreement * 100)} %`, "How well what was read fits that tag: 100 % is perfect, 0 % is chance."],
   ];
 }
 
@@ -126,19 +126,20 @@ export function displacement({ rmsRel, maxRel, diagonal, movedVertices, vertices
     { class: "displacement", "aria-label": "How far vertices move" },
     h("h3", {}, "How far vertices move"),
     numbers([
-      ["On average", both(rmsRel), "the root of the mean square"],
+      ["On average", both(rmsRel)],
       ["At most", both(maxRel)],
       ["Moved", `${count(movedVertices)} of ${count(vertices)}`],
     ]),
-    h("p", { class: "hint" }, "The size is the diagonal of the box around the model; units are those of its file."),
+    h("p", { class: "hint" }, "The size is the diagonal of the box around the model, a unit the one of its file; the average is the root of the mean square."),
   );
 }
 
 /** What was tried on the marked copy, one a row, and what came of it: in words and by a sign, never by colour alone. */
 export function forecastList(forecast: Forecast[]): HTMLElement {
   const row = ({ attack, level }: Forecast) => {
-    const words = attackWords(attack);
-    return h("li", { "data-level": level }, h("span", {}, words.charAt(0).toUpperCase() + words.slice(1)), h("span", { class: "level" }, LEVELS[level]));
+    const { name, meaning } = attackWords(attack);
+    const what = h("span", {}, name.charAt(0).toUpperCase() + name.slice(1), ...(meaning ? [h("span", { class: "hint" }, meaning)] : []));
+    return h("li", { "data-level": level }, what, h("span", { class: "level" }, LEVELS[level]));
   };
   return h(
     "section",

@@ -129,6 +129,7 @@ export class Protect extends View<Stage> {
 
   async #show(model: Model): Promise<void> {
     this.#forget();
+    this.#shelf.fold();
     await super.take(model);
     if (model === this.model) {
       this.#tryLater();
@@ -137,6 +138,7 @@ export class Protect extends View<Stage> {
 
   protected override close(): void {
     this.#forget();
+    this.#shelf.fold();
     this.#takeSeveral([]);
     super.close();
   }
@@ -351,5 +353,5 @@ function tagWords({ tag, number }: DetailedExtraction): string {
 /** What marking a marked model means. */
 function alreadyWords(already: DetailedExtraction, tag: string): string {
   const what = already.tag === tag ? "A second one with the same tag adds nothing that a check would read" : `A second one, with the tag ${tag}, takes the place of that tag`;
-  return `It is your key’s mark, with ${tagWords(already)}. ${what}, and moves the surface as far again. Better take the original, which has no mark.`;
+  return `It carries your key’s mark, with ${tagWords(already)}. ${what}, and moves the surface as far again. Better take the original, which has no mark.`;
 }

@@ -1,6 +1,6 @@
 /**
- * Finished copies. Each has a card that says what it was made with, and whether the form says something else by now; several have a
- * table. They stay until their owner dismisses them, and what was not downloaded through a reload.
+ * Finished copies. The one whose model is shown has a card that says what it was made with, and whether the form says something else by
+ * now; all have a list. They stay until their owner dismisses them, and what was not downloaded through a reload.
  */
 import type { EmbedReport } from "meshmark";
 import { button, find, h } from "./dom";
@@ -47,7 +47,7 @@ interface Failure {
 
 export class Shelf {
   readonly #entries: (Entry | Failure)[] = [];
-  readonly #table = h("section", { class: "card", "aria-label": "Finished copies", hidden: "" });
+  readonly #list = h("section", { class: "card", "aria-label": "Finished copies", hidden: "" });
   #shown: Entry | undefined;
 
   constructor(
@@ -77,12 +77,18 @@ export class Shelf {
     this.#draw();
   }
 
-  /** Brings the copy finished last to the eye, or the table where there were several. */
-  present(isTable: boolean): void {
-    const target = isTable ? this.#table : this.#shown?.card;
+  /** Brings the copy finished last to the eye, or the list where there were several. */
+  present(isList: boolean): void {
+    const target = isList ? this.#list : this.#shown?.card;
     if (target) {
       this.outcome.present(target);
     }
+  }
+
+  /** Another model is shown: what was finished is in the list alone. */
+  fold(): void {
+    this.#shown = undefined;
+    this.#draw();
   }
 
   /** The copy that was made last, while its original is the model that is shown. */
@@ -103,7 +109,7 @@ export class Shelf {
   /** Says on each card whether it still is of what the form says. */
   refresh(): void {
     for (const entry of this.#copies()) {
-      flag(entry.card, differences(entry, this.now()), `This copy carries ${whose(entry.copy)}. If the form is right, mark the model again.`);
+      flag(entry.card, differences(entry, this.now()), "If the form is right, mark the model again.");
     }
   }
 
@@ -131,7 +137,7 @@ export class Shelf {
       }
     }
     if (this.#shown && !this.#entries.includes(this.#shown)) {
-      this.#shown = this.#copies().at(-1);
+      this.#shown = undefined;
     }
     this.#draw();
     (this.outcome.root.querySelector("h2") ?? find("form button[type=submit]", this.outcome.root.parentElement!)).focus();
@@ -153,16 +159,16 @@ export class Shelf {
 
   #draw(): void {
     const copies = this.#copies();
-    this.#table.hidden = this.#entries.length < 2 && copies.length === this.#entries.length;
-    this.#table.replaceChildren(
-      h("h2", {}, copies.length === this.#entries.length ? `${copies.length} finished copies` : `${copies.length} of ${this.#entries.length} models marked`),
-      h("div", { class: "scroll" }, table(this.#entries.map((entry) => ("copy" in entry ? this.#row(entry) : this.#failedRow(entry))))),
+    this.#list.hidden = this.#entries.every((entry) => entry === this.#shown);
+    this.#list.replaceChildren(
+      h("h2", {}, copies.length === this.#entries.length ? `Finished: ${copies.length === 1 ? "1 copy" : `${copies.length} copies`}` : `${copies.length} of ${this.#entries.length} models marked`),
+      h("ul", { class: "copies" }, ...this.#entries.map((entry) => ("copy" in entry ? this.#row(entry) : this.#failedRow(entry)))),
       actions(
         ...(copies.length > 1 ? [button(`Download all ${copies.length} (.zip)`, () => void this.#saveAll(copies), "primary")] : []),
-        button("Dismiss all", () => this.#dismiss(...this.#entries.slice())),
+        button(this.#entries.length === 1 ? "Dismiss" : "Dismiss all", () => this.#dismiss(...this.#entries.slice())),
       ),
     );
-    this.outcome.finish(...(this.#shown ? [this.#shown.card] : []), this.#table);
+    this.outcome.finish(...(this.#shown ? [this.#shown.card] : []), this.#list);
   }
 
   #row(entry: Entry): HTMLElement {
@@ -179,18 +185,15 @@ export class Shelf {
       control.setAttribute("aria-label", `Download ${name}`);
       return control;
     });
-    const cells = [
-      h("td", {}, h("code", {}, asked.tag), owner === null ? "" : ` ${owner}`),
-      h("td", {}, report.readBack.verdict === "found" ? `survives ${survived} of ${report.forecast.length}` : "does not hold"),
-      h("td", {}, actions(show, ...download)),
-    ];
-    return h("tr", {}, h("th", { scope: "row" }, marked.name), ...cells);
+    const state = report.readBack.verdict === "found" ? `survives ${survived} of ${report.forecast.length} changes` : "the mark does not hold";
+    const about = h("p", { class: "hint" }, h("code", {}, asked.tag), ` ${owner === null ? "of a key file" : `of ${owner}`}, ${asked.strength}, ${state}`);
+    return h("li", {}, h("strong", {}, marked.name), about, actions(...download, ...(entry === this.#shown ? [] : [show])));
   }
 
   #failedRow(failure: Failure): HTMLElement {
     const dismiss = button("Dismiss", () => this.#dismiss(failure));
     dismiss.setAttribute("aria-label", `Dismiss ${failure.host}`);
-    return h("tr", {}, h("th", { scope: "row" }, failure.host), h("td", { class: "problem", colspan: "2" }, `Not marked: ${problem(failure.error).text}.`), h("td", {}, dismiss));
+    return h("li", {}, h("strong", {}, failure.host), h("p", { class: "problem" }, `Not marked: ${problem(failure.error).text}.`), actions(dismiss));
   }
 
   /** The copies and their reports in one archive. */
@@ -226,13 +229,13 @@ export class Shelf {
       actions(main!, ...others),
       ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
       forecastList(report.forecast),
-      numbers([...readingRows(readBack), ["Owner", owner ?? "a key file"], ["Read from", holders(report), "where the mark lives in this copy: its shape, or how its vertices are connected"]]),
+      numbers([...readingRows(readBack), ["Owner", owner ?? "a key file"], ["Read from", holders(report), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."]]),
       displacement(report),
       details(
         "Carriers and files",
         carrierTable(readBack.carriers),
         numbers([
-          ["Diagonal", `${significant(report.diagonal)} units`, "of the box around the model, in the units of its file"],
+          ["Diagonal", `${significant(report.diagonal)} units`, "Of the box around the model, in the units of its file."],
           ["Tag as a number", String(report.number)],
           ["SHA-256 of the original", h("code", { class: "hash" }, report.hostSha256)],
           ["SHA-256 of the copy", h("code", { class: "hash" }, report.markedSha256)],
@@ -276,11 +279,6 @@ async function saveKey(key: KeySource): Promise<void> {
   const bytes = await key.make(await engine, { signal: new AbortController().signal, stage: () => {}, onProgress: () => {} });
   save("meshmark.key", bytes.slice());
   bytes.fill(0);
-}
-
-function table(rows: HTMLElement[]): HTMLElement {
-  const heads = ["Copy", "Tag and owner", "Mark", ""].map((text) => h("th", { scope: "col" }, text));
-  return h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows));
 }
 
 /** The carriers from which the mark was read back; another one may be too weak in this model. */

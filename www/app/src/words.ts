@@ -11,30 +11,36 @@ export const VERDICTS: Record<Verdict, string> = {
 
 /** Each carrier's name, where its symbols live, and what they survive there. */
 export const CARRIERS: Record<Carrier, { name: string; home: string; survives: string }> = {
-  solid: { name: "Shape (SOLID)", home: "shape", survives: "Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
-  ring: { name: "Connectivity (RING)", home: "connectivity", survives: "Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
+  solid: { name: "Shape (SOLID)", home: "shape", survives: "In where the surface is, whatever its triangles. Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
+  ring: { name: "Connectivity (RING)", home: "connectivity", survives: "In where each vertex sits among its neighbours. Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
 };
 
-/** What is tried on a marked model, to follow "It survives". */
-const ATTACKS: Record<string, string> = {
-  none: "no change at all",
-  noise: "noise: each vertex shaken by up to 0.1 % of the model’s radius",
-  quantize: "rounding of positions to 11 bits, as compression does",
-  smooth: "10 light steps of smoothing (in Blender: Smooth, factor 0.1, repeat 10)",
-  "simplify-30": "removing 30 % of its triangles",
-  "simplify-70": "removing 70 % of its triangles",
-  crop: "cutting 30 % of it away",
+interface AttackWords {
+  /** To follow "It survives". */
+  name: string;
+  meaning?: string;
+}
+
+/** What is tried on a marked model. */
+const ATTACKS: Record<string, AttackWords> = {
+  none: { name: "no change at all" },
+  noise: { name: "noise of 0.1 %", meaning: "Each vertex is shaken by up to 0.1 % of the model’s radius." },
+  quantize: { name: "rounding to 11 bits", meaning: "Of positions, as when a model is compressed." },
+  smooth: { name: "10 light steps of smoothing", meaning: "In Blender: Smooth Vertices, smoothing 0.1, repeat 10." },
+  "simplify-30": { name: "removing 30 % of its triangles" },
+  "simplify-70": { name: "removing 70 % of its triangles" },
+  crop: { name: "cutting 30 % of it away" },
 };
 
 export const LEVELS: Record<Forecast["level"], string> = { green: "Survives", amber: "Barely", red: "Lost" };
 
-export function attackWords(attack: string): string {
-  return ATTACKS[attack] ?? attack;
+export function attackWords(attack: string): AttackWords {
+  return ATTACKS[attack] ?? { name: attack };
 }
 
 /** What the mark does not survive, in one sentence; `null` where it survives all that was tried. */
 export function losses(forecast: Forecast[]): string | null {
-  const lost = forecast.filter(({ level }) => level === "red").map(({ attack }) => attackWords(attack));
+  const lost = forecast.filter(({ level }) => level === "red").map(({ attack }) => attackWords(attack).name);
   return lost.length === 0 ? null : `It will not survive ${new Intl.ListFormat("en", { type: "disjunction" }).format(lost)}.`;
 }
 

@@ -12,6 +12,7 @@ import { Chain } from "./chain";
 import { SurvivalMap } from "./map";
 import { picker } from "./picker";
 import { ownTool } from "./own";
+import { Now } from "./now";
 import { Queue } from "./queue";
 import { Rows } from "./rows";
 import { BreakStage } from "./stage";
@@ -25,6 +26,7 @@ export class Break extends View<BreakStage> {
   readonly #seed = find<HTMLInputElement>("#seed");
   readonly #chain = new Chain(find("#chain"), (steps) => this.#try(steps));
   readonly #queue = new Queue();
+  readonly #now = new Now(find("#break-now"), () => this.#tried.scrollIntoView({ block: "start" }));
   /** How the result of a tool that is not ours comes in. */
   readonly #own: HTMLElement;
   #bench: Bench | undefined;
@@ -73,7 +75,7 @@ export class Break extends View<BreakStage> {
       const found = modelsIn(files);
       this.outcome.tell(null);
       for (const { name, open } of found) {
-        this.#ask(this.#made(name, "a file of your own", bench.judge(await open())));
+        this.#ask(this.#made(name, "a file of your own", false, bench.judge(await open())));
       }
     } catch (error) {
       this.outcome.tell(errorCard("Cannot open", error));
@@ -122,11 +124,15 @@ export class Break extends View<BreakStage> {
       onChoose: (attempt) => this.#choose(attempt),
     });
     this.#families.replaceChildren(...picker(every, { onTry: (step) => this.#try([step]), onAdd: (step) => this.#chain.add(step) }));
-    const hint = "By chance: a model made without the key would show as much at most so often. Cost: RMS and largest distance from the marked model, in % of its diagonal, and MSDM, how visible the difference is, 0 to 1.";
+    const hint = "By chance: a model made without the key would show as much at most so often; also for each place where the mark lives. Cost: average and largest distance from the marked model, in % of its size, and how visible the difference is, from 0 to 1 (MSDM).";
     this.#tried.replaceChildren(section("What was tried", hint, rows.root, this.#own));
     this.#survival.replaceChildren(section("Survival map", "Each attack at each level, weakest first. Choose a cell to see its copy; what you try meanwhile comes first.", this.#map.root));
     this.#setOpen(true);
     announce("The mark is there. Try to break it.");
+    const headline = find("h2", this.#tools);
+    headline.tabIndex = -1;
+    headline.focus({ preventScroll: true }); // Begin had it, and is gone
+    find("[data-stage]", this.root).scrollIntoView({ block: "start" });
   }
 
   /** What stands in the map was drawn from the seed before: a map that has been begun stays until it is begun anew. */
@@ -147,6 +153,7 @@ export class Break extends View<BreakStage> {
     this.#bench?.close();
     this.#bench = this.#rows = this.#map = this.#shown = undefined;
     this.#chain.clear();
+    this.#now.hide();
     this.#tried.replaceChildren();
     this.#survival.replaceChildren();
     this.#setOpen(false);
@@ -157,18 +164,20 @@ export class Break extends View<BreakStage> {
     const seed = Math.max(0, Math.floor(this.#seed.valueAsNumber || 0)) % 2 ** 32;
     const work: Work = (telling) => bench.attack(steps.map(({ name }) => name), seed)(telling);
     // A second mark's key is drawn anew each time.
-    const hint = steps.some(({ name }) => name === SECOND_MARK) ? `seed ${seed}, a fresh key` : `seed ${seed}`;
-    return this.#made(stepsWords(steps), hint, work);
+    const isFresh = steps.some(({ name }) => name === SECOND_MARK);
+    return this.#made(stepsWords(steps), isFresh ? `seed ${seed}, a fresh key` : `seed ${seed}`, !isFresh, work);
   }
 
-  #made(title: string, hint: string, work: Work): Attempt {
-    const attempt = new Attempt(title, hint, work);
+  #made(title: string, hint: string, isRepeatable: boolean, work: Work): Attempt {
+    const attempt = new Attempt(title, hint, isRepeatable, work);
     attempt.onChange(() => this.#follow(attempt));
     return attempt;
   }
 
+  /** What was tried before, and would come to the same, is shown again. */
   #try(steps: Step[]): void {
-    this.#ask(this.#attempt(steps));
+    const attempt = this.#attempt(steps);
+    this.#choose(this.#rows?.like(attempt) ?? attempt);
   }
 
   /** A cell of the map: what it holds is shown, what it holds not yet is tried. */
@@ -176,6 +185,7 @@ export class Break extends View<BreakStage> {
     if (attempt.state === "done") {
       this.#rows?.add(attempt);
       this.#look(attempt);
+      announce(`${attempt.title}: ${cameOf(attempt)}`);
     } else {
       this.#ask(attempt);
     }
@@ -210,7 +220,9 @@ export class Break extends View<BreakStage> {
     if (attempt !== this.#shown) {
       return;
     }
-    this.stage.describeCopy(title, state === "running" ? words : capital(cameOf(attempt)), state === "done" ? (finding?.level ?? null) : null);
+    const came = state === "running" ? words : capital(cameOf(attempt));
+    this.stage.describeCopy(title, came, state === "done" ? (finding?.level ?? null) : null);
+    this.#now.tell(title, came, state === "done" ? (finding?.level ?? null) : null);
     if (copy && copy !== this.#broughtCopy) {
       this.#broughtCopy = copy;
       void this.stage.showCopy(copy);

@@ -1,5 +1,6 @@
 // How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
 import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
 import { button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
 import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
@@ -35,7 +36,7 @@ onPage("raking light shows the geometry's own normals, whatever seams and normal
 onPage("after one visit the page works without a network, through a reload", async () => {
   await page.getByText("Ready to work offline").waitFor();
   await context.setOffline(true);
-  await page.reload();
+  await page.goto(new URL("index.html", page.url()).href);
   await page.getByRole("button", { name: "Try the demo model" }).click();
   await facts().getByText("demo.glb").waitFor();
   await drawn();
@@ -46,6 +47,17 @@ onPage("after one visit the page works without a network, through a reload", asy
   await page.getByRole("tab", { name: "Break" }).click();
   await button("Try noise 0.1 %").click();
   await view().locator('tr[data-state="done"]').waitFor();
+
+  await context.setOffline(false);
+  const worker = new URL("../app/dist/sw.js", import.meta.url);
+  const script = readFileSync(worker, "utf8");
+  writeFileSync(worker, `${script}// another version`);
+  try {
+    await page.evaluate(() => navigator.serviceWorker.ready.then((registration) => registration.update()));
+    await page.getByText("A new version waits").waitFor();
+  } finally {
+    writeFileSync(worker, script);
+  }
 });
 
 onPage("the keyboard does all of it", async () => {

@@ -85,6 +85,7 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   assert.equal(await copies.count(), 2, "they do not survive a reload");
   await result().getByText(`small.marked.glb carries the tag NEXT of ${OWNER}`).waitFor();
   const stored = new Uint8Array(readFileSync(await saved(result().getByRole("button", { name: /^Download/ }))));
+  assert.equal(await focused(), "Download small.marked.glb", "the focus is lost with the download");
   assert.equal(meshmark.detect(stored, meshmark.deriveKey(OWNER, PASSPHRASE)).tag, "NEXT");
   await copies.first().getByRole("button", { name: "Show small.marked.glb" }).click();
   await result().getByRole("button", { name: "Dismiss" }).click();
@@ -131,9 +132,10 @@ unseen("an answer is about one model, key and tag, and a wrong tag is named for 
   await result().getByText("The form says something else now: no tag to look for.").waitFor();
   await check();
   assert.equal(await headline(), "Your mark was found");
+  await result().getByText(`suspect.glb, with the key of ${OWNER}.`).waitFor();
   await result().getByText("It does not say who made the model first").waitFor();
   await fillKey("another one");
-  await result().getByText("The form says something else now: another key. This answer is about suspect.glb and the key of Test Owner.").waitFor();
+  await result().getByText("The form says something else now: another key. This answer is to what it said before.").waitFor();
   await dropped(onDisk("other.glb", small));
   await result().getByText("the model other.glb and another key").waitFor();
 

@@ -17,7 +17,7 @@ export interface Asked {
 }
 
 export interface Copy {
-  /** The same for the same bytes. */
+  /** The same for the same bytes under the same name. */
   id: string;
   /** When it was finished, as ISO 8601 has it. */
   made: string;
@@ -36,7 +36,7 @@ export interface Copy {
 export function copyOf(host: Model, { model, files, report }: Embedding, key: KeySource, asked: Asked): Copy {
   const marked: Model = { name: copyName(host, "marked"), bytes: model as Model["bytes"], buffers: { ...host.buffers, ...files }, images: host.images };
   const made = new Date().toISOString();
-  return { id: report.markedSha256, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, asked };
+  return { id: `${report.markedSha256} ${marked.name}`, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, asked };
 }
 
 /** What is to be downloaded: the main file first. */

@@ -32,7 +32,7 @@ const views = [protect, check, attack, study];
 startKeyForm(() => views.forEach((view) => view.onOther()));
 const select = startTabs([protectTab, checkTab, breakTab, studyTab], (panel) => {
   if (panel !== study.root) {
-    placeKeyForm(panel, panel === protect.root);
+    placeKeyForm(panel, { isNew: panel === protect.root, areSeveral: panel === check.root });
   }
   check.onOther();
   protect.onShown(panel === protect.root);
@@ -46,7 +46,7 @@ function go(tab: HTMLElement): void {
 }
 
 addEventListener("beforeunload", (event) => {
-  if (protect.isAnythingLeft || views.some(({ isRunning }) => isRunning)) {
+  if (protect.isAnythingLeft || views.some(({ isBusy }) => isBusy)) {
     event.preventDefault(); // the browser asks
   }
 });

@@ -23,7 +23,8 @@ export interface Found {
 }
 
 const MAIN = /\.(glb|gltf|vrm)$/i;
-const GLB_MAGIC = 0x46546c67;
+const EVIDENCE = /\.mmev$/i;
+const [GLB_MAGIC, EVIDENCE_MAGIC] = [0x46546c67, 0x56454d4d];
 
 /** What a file is that is no model, and what to do with it. */
 const OTHERS: [ending: RegExp, words: string][] = [
@@ -32,12 +33,16 @@ const OTHERS: [ending: RegExp, words: string][] = [
   [/\.(zip|7z|rar|tar|gz)$/i, "is an archive. Unpack it, and drop the model that is in it"],
   [/\.(obj|stl|ply|fbx|blend|dae|3ds|3mf|usdz?|usd[ac]|max|ma|mb|step|stp|iges)$/i, "is a model, but not of glTF. Open it in a program such as Blender and export it as glTF (.glb)"],
   [/\.key$/i, "seems to be a key. Choose it in the form, under “Key file”"],
-  [/\.mmev$/i, "is evidence, measured from a model. Drop it in Check"],
+  [EVIDENCE, "is evidence, measured from a model. Drop it in Check"],
 ];
 
-/** The models among some files, each with the files beside it that it names. @throws where there is none, in words */
-export function modelsIn(files: NamedFile[]): Found[] {
-  const mains = files.filter(({ path }) => MAIN.test(path));
+/**
+ * The models among some files, each with the files beside it that it names; where it is wanted, evidence too, which stands for a model.
+ *
+ * @throws where there is none, in words
+ */
+export function modelsIn(files: NamedFile[], isEvidenceWanted = false): Found[] {
+  const mains = files.filter(({ path }) => MAIN.test(path) || (isEvidenceWanted && EVIDENCE.test(path)));
   if (mains.length === 0) {
     throw new Error(otherWords(files));
   }
@@ -77,8 +82,17 @@ export function isGltf({ bytes }: Model): boolean {
   return !isGlb(bytes);
 }
 
+/** Whether it is no model, but what was measured of one. */
+export function isEvidence({ bytes }: Model): boolean {
+  return magicOf(bytes) === EVIDENCE_MAGIC;
+}
+
 function isGlb(bytes: Uint8Array): boolean {
-  return bytes.length >= 4 && new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true) === GLB_MAGIC;
+  return magicOf(bytes) === GLB_MAGIC;
+}
+
+function magicOf(bytes: Uint8Array): number | null {
+  return bytes.length < 4 ? null : new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
 }
 
 /** `chair.glb` and `marked.glb` make `chair.marked.glb`. */

@@ -63,7 +63,9 @@ export class Outcome {
 
   /** Shows what is finished, in place of what was. */
   finish(...cards: HTMLElement[]): void {
-    this.#finished.replaceChildren(...cards);
+    if (cards.length !== this.#finished.children.length || cards.some((card, i) => card !== this.#finished.children[i])) {
+      this.#finished.replaceChildren(...cards); // what stays where it is keeps the focus
+    }
   }
 
   /** Brings the start of a card in here to the eye, its headline to whoever listens. */

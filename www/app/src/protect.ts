@@ -52,20 +52,21 @@ export class Protect extends View<Stage> {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
   readonly #carriers = [...find("#carriers").querySelectorAll("input")];
-  readonly #submit = find("#protect button[type=submit]");
   readonly #preview = new Preview(() => this.#stronger());
   readonly #shelf: Shelf;
   /** The embedding that the form asks for now, or one like it by another key. */
   #trial: Trial<Marking> | undefined;
   #timer = 0;
   #looked: Looked | undefined;
-  /** The models that are marked in one go, if they are several. */
-  #several: Found[] = [];
 
   /** @param events what can be done with the marked copy in other views */
   constructor(root: HTMLElement, events: ProtectEvents) {
     super(root, "Cannot mark", Stage);
-    this.#shelf = new Shelf(this.outcome, { ...events, onStronger: () => this.#stronger() }, () => ({ model: this.model, asked: this.#asked() }));
+    const onStronger = () => {
+      this.#stronger();
+      void this.submit();
+    };
+    this.#shelf = new Shelf(this.outcome, { ...events, onStronger }, () => ({ model: this.model, asked: this.#asked() }));
     watchTag(this.#tag);
     const hint = find("#strength-hint");
     const describe = () => (hint.textContent = STRENGTHS[this.#strength.value as Preset]);
@@ -107,30 +108,9 @@ export class Protect extends View<Stage> {
     return { tag: this.#tag.value, strength: this.#strength.value as Preset, carriers: this.#chosenBoxes().map((box) => box.value as Carrier) };
   }
 
-  override async take(model: Model): Promise<void> {
-    this.#takeSeveral([]);
-    await this.#show(model);
-  }
-
-  /** Shows the first of several models; all are marked in one go. */
-  protected override async takeSeveral(found: Found[]): Promise<void> {
-    const first = await found[0]!.open();
-    this.#takeSeveral(found);
-    await this.#show(first);
-    if (first === this.model) {
-      this.outcome.tell(note(`${found.length} models: ${found.map(({ name }) => name).join(", ")}. All get the same key, tag and strength. The first is shown.`));
-    }
-  }
-
-  #takeSeveral(found: Found[]): void {
-    this.#several = found;
-    this.#submit.textContent = found.length > 1 ? `Mark these ${found.length} models` : "Mark this model";
-  }
-
-  async #show(model: Model): Promise<void> {
+  override async take(model: Model, several: Found[] = []): Promise<void> {
     this.#forget();
-    this.#shelf.fold();
-    await super.take(model);
+    await super.take(model, several);
     if (model === this.model) {
       this.#tryLater();
     }
@@ -138,8 +118,6 @@ export class Protect extends View<Stage> {
 
   protected override close(): void {
     this.#forget();
-    this.#shelf.fold();
-    this.#takeSeveral([]);
     super.close();
   }
 
@@ -182,6 +160,7 @@ export class Protect extends View<Stage> {
     clearTimeout(this.#timer);
     this.#dropTrial();
     this.#preview.hide();
+    this.#shelf.fold();
     this.#looked = undefined;
   }
 
@@ -206,7 +185,7 @@ export class Protect extends View<Stage> {
   async #try(): Promise<void> {
     const { model } = this;
     const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
-    const isNeeded = !this.#shelf.isLatestAsked && (!this.#trial || (isExact && !this.#trial.isExact));
+    const isNeeded = !this.#shelf.isAskedHere && (!this.#trial || (isExact && !this.#trial.isExact));
     if (!model || !isNeeded || !this.#isPromising() || this.root.hidden || this.isRunning) {
       return;
     }
@@ -262,7 +241,7 @@ export class Protect extends View<Stage> {
     }
     clearTimeout(this.#timer);
     this.#preview.hide();
-    await (this.#several.length > 1 ? this.#markSeveral(this.#several) : this.#markOne(model));
+    await (this.several.length > 1 ? this.#markSeveral(this.several) : this.#markOne(model));
   }
 
   async #markOne(model: Model): Promise<void> {
@@ -319,6 +298,7 @@ export class Protect extends View<Stage> {
         }
       }
     });
+    this.#shelf.fold();
     this.#shelf.present(true);
   }
 

@@ -2,7 +2,7 @@
 import type { DetailedExtraction, MeasureOptions } from "meshmark";
 import type { CallOptions, Client } from "meshmark/client";
 import type { KeyMaker } from "./key-form";
-import type { Model } from "./model";
+import { isEvidence, type Model } from "./model";
 import type { Progress } from "./task";
 
 type Heard = CallOptions & Pick<MeasureOptions, "onProgress">;
@@ -13,7 +13,12 @@ export interface Answer {
   isOther: boolean;
 }
 
-export async function detect(client: Client, { bytes, buffers }: Model, key: Uint8Array, expected: string | null, { signal, onProgress }: Heard): Promise<DetailedExtraction> {
+export async function detect(client: Client, model: Model, key: Uint8Array, expected: string | null, { signal, onProgress }: Heard): Promise<DetailedExtraction> {
+  const { bytes, buffers } = model;
+  if (isEvidence(model)) {
+    const reading = await (expected === null ? client.extract(bytes, key, { details: true, signal }) : client.verify(bytes, key, expected, { details: true, signal }));
+    return reading as DetailedExtraction;
+  }
   const options = { files: buffers, expected: expected ?? undefined, details: true, signal, onProgress };
   return (await client.detect(bytes, key, options)) as DetailedExtraction;
 }
@@ -25,6 +30,11 @@ export async function read(client: Client, model: Model, makeKey: KeyMaker, expe
     const blind = expected !== null && reading.verdict === "partial" ? await detect(client, model, key, null, progress) : reading;
     return blind.verdict === "found" ? { reading: blind, isOther: blind !== reading } : { reading, isOther: false };
   });
+}
+
+/** What is measured of a model, without a key; evidence is that already. */
+export async function evidenceOf(client: Client, model: Model, { signal, onProgress }: Heard): Promise<Uint8Array> {
+  return isEvidence(model) ? model.bytes : client.measure(model.bytes, { files: model.buffers, signal, onProgress });
 }
 
 /** Uses a key that is made for this and overwritten after it. */

@@ -1,15 +1,26 @@
 /** What can be kept of a check, as JSON. It never holds the key, the name or the passphrase, nor what follows the key where nothing is found. */
 import type { DetailedExtraction, Extraction } from "meshmark";
+import type { Line } from "./answers";
 import { engine } from "./engine";
+import { problem } from "./words";
 
 /** @param sha256 of the suspect's main file */
 export async function checkReport(suspect: string, sha256: string | null, expected: string | null, result: DetailedExtraction): Promise<object> {
-  const meshmark = await (await engine).version();
-  return { kind: expected === null ? "extract" : "verify", meshmark, made: new Date().toISOString(), suspect, sha256, expected, result: told(result) };
+  return { kind: expected === null ? "extract" : "verify", ...(await origin()), suspect, sha256, expected, result: told(result) };
+}
+
+/** Of several suspects, or several keys, whose number has been charged. */
+export async function checksReport(numSuspects: number, numKeys: number, expected: string | null, lines: Line[]): Promise<object> {
+  const line = (line: Line) => ("answer" in line ? { suspect: line.suspect, key: line.key, result: told(line.answer.reading) } : { suspect: line.suspect, error: problem(line.error).text });
+  return { kind: "checks", ...(await origin()), numSuspects, numKeys, expected, answers: lines.map(line) };
 }
 
 /** Reports of checks are passed on. */
-export function told(result: DetailedExtraction): Extraction {
+function told(result: DetailedExtraction): Extraction {
   const { lnP, agreement, carriers, ...verdict } = result;
   return result.verdict === "found" ? result : verdict;
+}
+
+async function origin(): Promise<{ meshmark: string; made: string }> {
+  return { meshmark: await (await engine).version(), made: new Date().toISOString() };
 }

@@ -11,7 +11,7 @@ import { engine } from "./engine";
 import { renamed, type Model } from "./model";
 import { save, saveJson } from "./save";
 import { forget, keep, kept } from "./store";
-import { CARRIERS, losses, problem, significant } from "./words";
+import { CARRIERS, losses, plain, problem, significant } from "./words";
 
 /** What a form says now. */
 export interface Now {
@@ -96,9 +96,9 @@ export class Shelf {
     return this.#shown?.host && this.#shown.host === this.now().model ? this.#shown.copy : undefined;
   }
 
-  /** Whether the copy whose card is open is what the form asks for now. */
-  get isLatestAsked(): boolean {
-    return this.latest !== undefined && differences(this.#shown!, this.now()).length === 0;
+  /** Whether a copy is there of what the form asks for now. */
+  get isAskedHere(): boolean {
+    return this.#copies().some((entry) => entry.host && differences(entry, this.now()).length === 0);
   }
 
   /** Whether a copy of this visit would be lost to its owner. */
@@ -140,7 +140,7 @@ export class Shelf {
       this.#shown = undefined;
     }
     this.#draw();
-    (this.outcome.root.querySelector("h2") ?? find("form button[type=submit]", this.outcome.root.parentElement!)).focus();
+    find("form button[type=submit]", this.outcome.root.parentElement!).focus();
   }
 
   #save(entry: Entry, name: string): void {
@@ -159,6 +159,7 @@ export class Shelf {
 
   #draw(): void {
     const copies = this.#copies();
+    const focused = this.#list.contains(document.activeElement) ? document.activeElement!.getAttribute("aria-label") : null;
     this.#list.hidden = this.#entries.every((entry) => entry === this.#shown);
     this.#list.replaceChildren(
       h("h2", {}, copies.length === this.#entries.length ? `Finished: ${copies.length === 1 ? "1 copy" : `${copies.length} copies`}` : `${copies.length} of ${this.#entries.length} models marked`),
@@ -169,6 +170,7 @@ export class Shelf {
       ),
     );
     this.outcome.finish(...(this.#shown ? [this.#shown.card] : []), this.#list);
+    [...this.#list.querySelectorAll("button")].find((control) => focused !== null && control.getAttribute("aria-label") === focused)?.focus();
   }
 
   #row(entry: Entry): HTMLElement {
@@ -224,7 +226,7 @@ export class Shelf {
     return card(
       readBack.verdict,
       holds ? "Your mark is in the copy" : "The mark does not hold in this model",
-      [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${readBack.reason ?? readBack.sentence}`, ...earlier],
+      [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
       ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
       actions(main!, ...others),
       ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),

@@ -2,7 +2,7 @@
 import type { Inspection } from "meshmark";
 import { announce, find, h, instantiate } from "./dom";
 import { startIntake, type IntakeEvents } from "./intake";
-import { missingFiles, sizeOf, type Model } from "./model";
+import { isEvidence, missingFiles, sizeOf, type Model } from "./model";
 import { bytes, count } from "./words";
 
 export interface StageEvents extends IntakeEvents {
@@ -89,6 +89,12 @@ export abstract class Showing {
     return isDrawn;
   }
 
+  /** Rests the tools, for there is nothing to see. */
+  protected rest(words: string): void {
+    this.#setUsable(false, words);
+    this.viewing.setAttribute("aria-busy", "false");
+  }
+
   protected tool<E extends HTMLElement = HTMLElement>(name: string): E {
     return find<E>(`[data-tool="${name}"]`, this.viewing);
   }
@@ -119,6 +125,9 @@ function hasWebGl(): boolean {
 /** What a model is, in a few words; also what of it is not there. */
 export function factsOf(model: Model, inspection: Inspection | null): string[] {
   const size = bytes(sizeOf(model));
+  if (isEvidence(model)) {
+    return [`evidence · ${size}`];
+  }
   const { images } = missingFiles(model);
   const lacking = images.length === 0 ? [] : [`without ${new Intl.ListFormat("en").format(images)}, which it names: the picture lacks that, the mark does not`];
   return [inspection ? `${count(inspection.vertices)} vertices · ${count(inspection.triangles)} triangles · ${size}` : size, ...lacking];

@@ -1,7 +1,7 @@
 /** A model and its marked copy, and the tools to look at both. */
 import type { EmbedReport, Inspection } from "meshmark";
 import { find, h } from "./dom";
-import type { Model } from "./model";
+import { isEvidence, type Model } from "./model";
 import { factsOf, Showing, type StageEvents } from "./showing";
 import { drawLegend } from "./viewer/colormap";
 import type { Look, Viewer } from "./viewer/viewer";
@@ -31,6 +31,10 @@ export class Stage extends Showing {
     this.facts(model.name, ...factsOf(model, inspection));
     this.#offer({ marked: false, normals: false });
     this.#pressAll({ version: "before", shading: "surface", normals: "geometry", wireframe: false });
+    if (isEvidence(model)) {
+      this.rest("Evidence has no picture: it is what was measured of a model, without the model.");
+      return;
+    }
     this.#isDrawn = this.draw(isWanted, async () => {
       const { loadScene, viewer } = await this.#loadViewer();
       const scene = await loadScene(model);

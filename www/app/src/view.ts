@@ -1,12 +1,15 @@
 /** What all views do: take a model in, show it, say what is wrong with it, work at it. */
 import type { Inspection } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
-import { find } from "./dom";
+import { announce, find } from "./dom";
 import { engine } from "./engine";
-import { missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
+import { isEvidence, missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
 import { errorCard, note, Outcome } from "./outcome";
 import type { Showing, StageEvents } from "./showing";
 import { Job, type Task } from "./task";
+
+/** Of several models. */
+const MOST_NAMED = 5;
 
 export abstract class View<S extends Showing> {
   readonly form: HTMLFormElement;
@@ -14,6 +17,9 @@ export abstract class View<S extends Showing> {
   protected readonly outcome: Outcome;
   protected model: Model | undefined;
   protected inspection: Inspection | undefined;
+  /** The models that are worked at in one go, where they are several. */
+  protected several: Found[] = [];
+  protected readonly isEvidenceWanted: boolean = false;
   /** What came with the model: files that it lacks may come later. */
   #files: NamedFile[] = [];
   #job: Job | undefined;
@@ -40,9 +46,13 @@ export abstract class View<S extends Showing> {
   async takeFiles(files: NamedFile[]): Promise<void> {
     const all = this.#areMissing(files) ? [...files, ...this.#files] : files;
     try {
-      const found = modelsIn(all);
-      await (found.length === 1 ? this.take(await found[0]!.open()) : this.takeSeveral(found));
+      const found = modelsIn(all, this.isEvidenceWanted);
+      if (found.length > 1 && !this.#submitButton.dataset["several"]) {
+        throw new Error(`There are ${found.length} models in this; drop one of them, with its own files.`);
+      }
+      const first = await found[0]!.open();
       this.#files = all;
+      await this.take(first, found.length > 1 ? found : []);
     } catch (error) {
       this.outcome.tell(errorCard("Cannot open", error));
     }
@@ -58,10 +68,6 @@ export abstract class View<S extends Showing> {
     return files.some(({ file }) => names.includes(file.name));
   }
 
-  protected async takeSeveral(found: Found[]): Promise<void> {
-    throw new Error(`There are ${found.length} models in this; drop one of them, with its own files.`);
-  }
-
   async takeDemo(): Promise<void> {
     try {
       const bytes = (await (await engine).demoModel()) as Model["bytes"];
@@ -71,9 +77,14 @@ export abstract class View<S extends Showing> {
     }
   }
 
-  /** Shows a model, ending what is being done to the one before. What is wrong with it is said at once, not when it is used. */
-  async take(model: Model): Promise<void> {
+  /**
+   * Shows a model, ending what is being done to the one before. What is wrong with it is said at once, not when it is used.
+   *
+   * @param several all of them, where it is the first of several
+   */
+  async take(model: Model, several: Found[] = []): Promise<void> {
     this.model = model;
+    this.#tellSeveral(several);
     this.inspection = undefined;
     this.outcome.tell(this.#stop() ? note("What was going on has been ended: another model came.") : null);
     this.stage.open(model.name);
@@ -86,10 +97,28 @@ export abstract class View<S extends Showing> {
     if (problem) {
       this.outcome.tell(problem);
     }
+    announce(`${model.name} is open.${problem ? ` ${problem.textContent}` : ""}`);
     await this.stage.show(model, inspection ?? null);
   }
 
+  /** Says at the form that it is for several models. */
+  #tellSeveral(several: Found[]): void {
+    this.several = several;
+    const words = this.form.querySelector<HTMLElement>("[data-several-words]");
+    if (words) {
+      const { one, several: label } = this.#submitButton.dataset;
+      const names = several.slice(0, MOST_NAMED).map(({ name }) => name);
+      const more = several.length > MOST_NAMED ? [`${several.length - MOST_NAMED} more`] : [];
+      words.hidden = several.length === 0;
+      words.textContent = `All with the same answers above: ${new Intl.ListFormat("en").format([...names, ...more])}. The first is shown.`;
+      this.#submitButton.textContent = several.length === 0 ? one! : label!.replace("#", String(several.length));
+    }
+  }
+
   async #inspect(model: Model): Promise<[Inspection | undefined, HTMLElement | null]> {
+    if (isEvidence(model)) {
+      return [undefined, null];
+    }
     try {
       const inspection = await (await engine).inspect(model.bytes, { files: model.buffers });
       return [inspection, this.foresee(inspection)];
@@ -109,6 +138,7 @@ export abstract class View<S extends Showing> {
   protected close(): void {
     this.#stop();
     this.model = undefined;
+    this.#tellSeveral([]);
     this.outcome.tell(null);
     this.stage.close();
     this.onOther();
@@ -122,6 +152,11 @@ export abstract class View<S extends Showing> {
   /** Whether a person waits for something. */
   get isRunning(): boolean {
     return this.#job !== undefined;
+  }
+
+  /** Whether something goes on that would be lost with the page. */
+  get isBusy(): boolean {
+    return this.isRunning;
   }
 
   /**

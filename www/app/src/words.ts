@@ -44,6 +44,11 @@ export function losses(forecast: Forecast[]): string | null {
   return lost.length === 0 ? null : `It will not survive ${new Intl.ListFormat("en", { type: "disjunction" }).format(lost)}.`;
 }
 
+/** The library's words with the page's: what it calls a payload is a tag here. */
+export function plain(words: string): string {
+  return words.replaceAll("payload", "tag");
+}
+
 /** Where a payload was read: "the shape", "the connectivity", or both; `null` where none was. */
 export function homes({ number, carriers }: DetailedExtraction): string | null {
   const spoke = carriers.filter((carrier) => number !== null && carrier.number === number).map(({ name }) => `the ${CARRIERS[name].home}`);

@@ -105,6 +105,10 @@ export class Break extends View<BreakStage> {
     }
   }
 
+  override get isBusy(): boolean {
+    return this.isRunning || this.#queue.isBusy;
+  }
+
   #open(bench: Bench): void {
     const { reading } = bench.first;
     if (reading.verdict !== "found" && reading.verdict !== "partial") {

@@ -1,7 +1,7 @@
 // How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
+import { assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
 import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 onPage("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
@@ -101,30 +101,6 @@ onPage("the keyboard does all of it", async () => {
   assert.equal(await focused(), "Download demo.marked.glb");
 });
 
-onPage("every control has a name", async () => {
-  await page.getByRole("button", { name: "Try the demo model" }).click();
-  await facts().getByText("demo.glb").waitFor();
-  await assertNamed();
-  await page.getByRole("tab", { name: "Study" }).click();
-  await page.locator("#traced").getByText("Ranked anew").waitFor();
-  await assertNamed();
-  await page.getByRole("tab", { name: "Protect" }).click();
-  await mark();
-  await button("Try to break it").click();
-  await button("Try noise 0.1 %").click();
-  await view().locator('tr[data-state="done"]').waitFor();
-  await assertNamed();
-});
-
-async function assertNamed() {
-  const controls = await page.locator("button:visible, input:visible, select:visible, canvas[tabindex]:visible").all();
-  assert.ok(controls.length > 10);
-  for (const control of controls) {
-    const name = (await control.ariaSnapshot()).match(/"(.+)"/)?.[1];
-    assert.ok(name, await control.evaluate((element) => element.outerHTML));
-  }
-}
-
 for (const [name, options] of [
   ["desktop-light", {}],
   ["desktop-dark", { colorScheme: "dark" }],
@@ -142,6 +118,7 @@ for (const [name, options] of [
       const { y, height } = await seen.boundingBox();
       assert.ok(y >= 0 && y + height <= page.viewportSize().height, `what came of it is out of sight, at ${y} px`);
     }
+    await assertNamed();
     if (options.forcedColors) {
       const [chosen, other] = await Promise.all(["Marked", "Original"].map((name) => button(name).evaluate((control) => getComputedStyle(control).backgroundColor)));
       assert.notEqual(chosen, other, "what is chosen is not seen");
@@ -157,6 +134,7 @@ for (const [name, options] of [
     await drawn();
     await picture(`${name}-broken`);
     await assertFits();
+    await assertNamed();
   };
   onPage(`the page fits ${name}`, fits, options);
 }

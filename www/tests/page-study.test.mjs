@@ -1,7 +1,7 @@
 // Study: the paper's experiment on a model.
 import assert from "node:assert/strict";
 import * as meshmark from "meshmark";
-import { button, comeToLook, drop, dropped, facts, headline, isSame, looks, onDisk, onPage, page, result, unseen, view, workersAre } from "./page.mjs";
+import { assertNamed, button, comeToLook, drop, dropped, facts, headline, isSame, looks, onDisk, onPage, page, result, unseen, view, workersAre } from "./page.mjs";
 import { CUBE, glbFromObj } from "./support.mjs";
 
 onPage("the study begins with the model in Protect, in a worker that was not there before, and is measured until it is cancelled", async () => {
@@ -31,6 +31,8 @@ onPage("the study begins with the model in Protect, in a worker that was not the
     await page.getByLabel("Colours of the surface").selectOption(field);
     await view().locator(".legend", { hasText: said }).waitFor();
   }
+
+  await assertNamed();
 
   await page.getByLabel("Smoothing").selectOption("laplacian");
   await button("Measure Table I and Fig. 5").click();

@@ -224,6 +224,14 @@ export async function dropped(path) {
   await facts().getByText(basename(path), { exact: true }).waitFor();
 }
 
+/** Each control that can be reached has a name. */
+export async function assertNamed() {
+  const seen = await page.locator("body").ariaSnapshot();
+  const controls = seen.match(/^ *- (button|textbox|combobox|checkbox|radio|slider|spinbutton|tab|application)\b.*$/gm);
+  assert.ok(controls.length > 10, seen);
+  assert.deepEqual(controls.filter((control) => !/"[^"]+"/.test(control)), []);
+}
+
 /** Moves an attack's slider to a level, wherever that is among them. */
 export async function slide(name, level) {
   const slider = page.getByRole("slider", { name: `Level of ${name}`, exact: true });

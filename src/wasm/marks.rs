@@ -99,7 +99,11 @@ pub fn extract_many(evidence: &[u8], keys: JsValue, options: JsValue) -> Result<
     let is_for_owner = Options::new(options, &["details"])?.is_set("details")?;
     let key = |key: JsValue| {
         let bytes = key.dyn_into::<Uint8Array>();
-        key_from(&bytes.map_err(|_| argument("keys are byte arrays"))?.to_vec())
+        key_from(
+            &bytes
+                .map_err(|_| argument("keys are byte arrays"))?
+                .to_vec(),
+        )
     };
     let keys = keys
         .dyn_into::<Array>()

@@ -189,7 +189,9 @@ function sentences(reading: DetailedExtraction): string[] {
     case "found":
       return [...(tag === null ? why : [`It carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
     case "none":
-      return ["This does not prove that the model is not yours.", ...why];
+      return ["What was read agrees with this key no better than by chance. This does not prove that the model is not yours."];
+    case "cannot-check":
+      return ["The model is too small or too simple to tell."];
     default:
       return why;
   }

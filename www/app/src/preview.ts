@@ -1,6 +1,6 @@
 /** What a strength does to this model, beside the choice of it: how far vertices move, and what the mark would survive. */
 import type { EmbedReport } from "meshmark";
-import { announce, button, find, h } from "./dom";
+import { announce, button, find } from "./dom";
 import { actions, displacement, forecastList } from "./outcome";
 import type { Listener } from "./trial";
 import { losses, problem, STAGES } from "./words";

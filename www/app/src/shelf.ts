@@ -2,16 +2,16 @@
  * Finished copies. The one whose model is shown has a card that says what it was made with, and whether the form says something else by
  * now; all have a list. They stay until their owner dismisses them, and what was not downloaded through a reload.
  */
-import type { EmbedReport } from "meshmark";
-import { button, find, h } from "./dom";
-import type { KeySource } from "./key-form";
-import { actions, carrierTable, card, details, displacement, flag, forecastList, numbers, readingRows, type Outcome } from "./outcome";
-import { downloads, reportOf, whose, type Asked, type Copy } from "./copy";
+import { downloads, reportOf, type Asked, type Copy } from "./copy";
+import { copyCard } from "./copy-card";
+import { announce, button, find, h } from "./dom";
 import { engine } from "./engine";
+import type { KeySource } from "./key-form";
 import { renamed, type Model } from "./model";
-import { save, saveJson } from "./save";
+import { actions, flag, type Outcome } from "./outcome";
+import { save } from "./save";
 import { forget, keep, kept } from "./store";
-import { CARRIERS, losses, plain, problem, significant } from "./words";
+import { problem } from "./words";
 
 /** What a form says now. */
 export interface Now {
@@ -31,8 +31,8 @@ export interface ShelfEvents {
 /** A copy, and what only this visit knows of it. */
 interface Entry {
   copy: Copy;
-  /** What it was made of and with; unknown of a copy from before a reload. */
-  host?: Model;
+  /** What it was made of and with; unknown of a copy from before a reload. Originals are too much to hold in memory. */
+  host?: WeakRef<Model>;
   key?: KeySource;
   /** Its files that were not saved yet. */
   left: Set<string>;
@@ -59,16 +59,16 @@ export class Shelf {
 
   /** Puts those back that were there before a reload. */
   async restore(): Promise<void> {
-    for (const copy of await kept()) {
-      if (!this.#copies().some((entry) => entry.copy.id === copy.id)) {
-        this.#put({ copy, left: namesOf(copy), card: h("section") });
-      }
+    const copies = (await kept()).filter(({ id }) => !this.#copies().some((entry) => entry.copy.id === id));
+    copies.forEach((copy) => this.#put({ copy, left: namesOf(copy), card: h("section") }));
+    if (copies.length > 0) {
+      announce(`Kept from before: ${copies.length === 1 ? "1 copy" : `${copies.length} copies`} that nobody has downloaded.`);
     }
   }
 
   /** Takes a copy in that was finished now, and shows its card. */
   add(copy: Copy, host: Model, key: KeySource): void {
-    this.#put({ copy, host, key, left: namesOf(copy), card: h("section") });
+    this.#put({ copy, host: new WeakRef(host), key, left: namesOf(copy), card: h("section") });
     void keep(copy);
   }
 
@@ -93,7 +93,7 @@ export class Shelf {
 
   /** The copy that was made last, while its original is the model that is shown. */
   get latest(): Copy | undefined {
-    return this.#shown?.host && this.#shown.host === this.now().model ? this.#shown.copy : undefined;
+    return this.#shown && this.#shown.host?.deref() === this.now().model ? this.#shown.copy : undefined;
   }
 
   /** Whether a copy is there of what the form asks for now. */
@@ -215,46 +215,13 @@ export class Shelf {
   }
 
   #card(entry: Entry): HTMLElement {
-    const { copy, host, key } = entry;
-    const { marked, report, files, owner, asked } = copy;
-    const { readBack } = report;
-    const holds = readBack.verdict === "found";
-    const lost = holds ? losses(report.forecast) : null;
-    const [main, ...others] = downloads(copy).map(({ name }) => button(`Download ${name}`, () => this.#save(entry, name), "primary"));
-    const stronger = lost !== null && host && asked.strength !== "strong" ? [actions(button(`Mark again, ${asked.strength === "subtle" ? "balanced" : "strong"}`, () => this.events.onStronger()))] : [];
-    const earlier = host ? [] : [`Made ${new Date(copy.made).toLocaleString()}, and not downloaded since. This browser keeps it until you download or dismiss it.`];
-    return card(
-      readBack.verdict,
-      holds ? "Your mark is in the copy" : "The mark does not hold in this model",
-      [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
-      ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
-      actions(main!, ...others),
-      ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
-      forecastList(report.forecast),
-      numbers([...readingRows(readBack), ["Owner", owner ?? "a key file"], ["Read from", holders(report), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."]]),
-      displacement(report),
-      details(
-        "Carriers and files",
-        carrierTable(readBack.carriers),
-        numbers([
-          ["Diagonal", `${significant(report.diagonal)} units`, "Of the box around the model, in the units of its file."],
-          ["Tag as a number", String(report.number)],
-          ["SHA-256 of the original", h("code", { class: "hash" }, report.hostSha256)],
-          ["SHA-256 of the copy", h("code", { class: "hash" }, report.markedSha256)],
-        ]),
-      ),
-      h("h3", {}, "To keep beside the original"),
-      h("p", { class: "hint" }, "Keep the original to yourself, with the report and the key: together they show later what you marked, when, and how. Whoever has the key file has the key."),
-      actions(
-        button("Save report (JSON)", async () => saveJson(renamed(marked.name, "report.json"), await reportOf(copy))),
-        ...(key ? [button("Save key file", () => void saveKey(key))] : []),
-      ),
-      actions(
-        button("Check this copy", () => this.events.onCheck(marked)),
-        ...(holds && host ? [button("Try to break it", () => this.events.onBreak())] : []),
-        button("Dismiss", () => this.#dismiss(entry)),
-      ),
-    );
+    const { copy, key } = entry;
+    return copyCard(copy, {
+      onSave: (name) => this.#save(entry, name),
+      onCheck: () => this.events.onCheck(copy.marked),
+      onDismiss: () => this.#dismiss(entry),
+      ...(key && { ofThisVisit: { onSaveKey: () => void saveKey(key), onBreak: () => this.events.onBreak(), onStronger: () => this.events.onStronger() } }),
+    });
   }
 }
 
@@ -269,7 +236,7 @@ function differences({ copy, host, key }: Entry, { model, asked }: Now): string[
     ...(asked.tag === tag ? [] : [asked.tag === "" ? "no tag" : `the tag ${asked.tag}`]),
     ...(asked.strength === strength ? [] : [`the strength ${asked.strength}`]),
     ...(asked.carriers.join() === carriers.join() ? [] : ["other places for the mark"]),
-    ...(model === host ? [] : [model ? `the model ${model.name}` : "no model"]),
+    ...(model === host.deref() ? [] : [model ? `the model ${model.name}` : "no model"]),
   ];
 }
 
@@ -281,10 +248,4 @@ async function saveKey(key: KeySource): Promise<void> {
   const bytes = await key.make(await engine, { signal: new AbortController().signal, stage: () => {}, onProgress: () => {} });
   save("meshmark.key", bytes.slice());
   bytes.fill(0);
-}
-
-/** The carriers from which the mark was read back; another one may be too weak in this model. */
-function holders({ number, readBack }: EmbedReport): string {
-  const holding = readBack.carriers.filter((carrier) => carrier.number === number);
-  return holding.map(({ name }) => CARRIERS[name].name).join(", ");
 }

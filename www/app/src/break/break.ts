@@ -1,5 +1,5 @@
 /** Try to break it: a marked model and its key in, and what is left of the mark after whatever is done to it. */
-import { announce, button, find, h } from "../dom";
+import { announce, find, h } from "../dom";
 import { engine } from "../engine";
 import { incompleteKeyField, isKeyComplete, keySource } from "../key-form";
 import { modelsIn, type Model, type NamedFile } from "../model";

@@ -1,7 +1,7 @@
 // How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
+import { assertFits, assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, NARROW, onDisk, onPage, PHONE, context, page, picture, result, view } from "./page.mjs";
 import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 onPage("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
@@ -99,13 +99,32 @@ onPage("the keyboard does all of it", async () => {
   assert.equal(await focused(), "Your mark is in the copy");
   await press("Tab");
   assert.equal(await focused(), "Download demo.marked.glb");
+  await Promise.all([page.waitForEvent("download"), press("Enter")]);
+  assert.equal(await focused(), "Download demo.marked.glb");
+
+  const tabTo = async (name) => {
+    for (let i = 0; i < 50 && (await focused()) !== name; i++) {
+      await press("Tab");
+    }
+    assert.equal(await focused(), name);
+  };
+  await tabTo("Check this copy");
+  await press("Enter");
+  assert.equal(await focused(), "Check");
+  await tabTo("Check this model");
+  await press("Enter");
+  await result().waitFor();
+  assert.equal(await focused(), "Your mark was found");
+  await tabTo("Dismiss");
+  await press("Enter");
+  assert.equal(await focused(), "Check this model");
 });
 
 for (const [name, options] of [
   ["desktop-light", {}],
   ["desktop-dark", { colorScheme: "dark" }],
-  ["mobile", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
-  ["narrow", { viewport: { width: 320, height: 640 }, forcedColors: "active" }],
+  ["mobile", PHONE],
+  ["narrow", NARROW],
 ]) {
   const fits = async () => {
     await picture(`${name}-empty`);
@@ -171,12 +190,6 @@ function middleOf(png, aside) {
     },
     [png.toString("base64"), aside],
   );
-}
-
-async function assertFits() {
-  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  assert.ok(overflow <= 0, `${overflow} px too wide`);
-  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
 }
 
 /** A torus with bumps, its triangles turned outwards. */

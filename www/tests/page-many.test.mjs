@@ -6,7 +6,7 @@ import { before } from "node:test";
 import { NodeIO } from "@gltf-transform/core";
 import { unzipSync } from "fflate";
 import * as meshmark from "meshmark";
-import { button, check, drop, dropped, facts, fillKey, headline, mark, onDisk, page, picture, result, saved, submitted, unseen, view } from "./page.mjs";
+import { assertFits, button, check, drop, dropped, facts, fillKey, headline, mark, NARROW, onDisk, page, PHONE, picture, result, saved, submitted, unseen, view } from "./page.mjs";
 import { CUBE, glbFromObj, OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 
 let small;
@@ -29,6 +29,7 @@ unseen("several models are marked in one go, and are had in one archive with the
   await list.getByText(/^Not marked: .*too small or too regular/).waitFor();
   await list.getByText(`Not marked: it carries your mark already, with the tag ${TAG}; drop it alone to mark it again.`).waitFor();
   await picture("many-marked");
+  await assertFits();
   const archive = unzipSync(readFileSync(await saved("Download all 2 (.zip)")));
   assert.deepEqual(Object.keys(archive).sort(), ["a.marked.glb", "a.marked.report.json", "c.marked.report.json", "c.marked.vrm"]);
   assert.equal(meshmark.detect(archive["c.marked.vrm"], key).tag, "LOT-1");
@@ -41,7 +42,7 @@ unseen("several models are marked in one go, and are had in one archive with the
   await mark();
   const keyFile = readFileSync(await saved("Save key file"));
   assert.deepEqual(new Uint8Array(keyFile), key);
-});
+}, NARROW);
 
 unseen("several suspects are checked in one go, with several keys, and evidence in a model’s place", async () => {
   await page.getByRole("tab", { name: "Check" }).click();
@@ -52,6 +53,7 @@ unseen("several suspects are checked in one go, with several keys, and evidence 
   assert.match((await result().getByRole("listitem").allTextContents()).join("\n"), /^mine\.glbFound, with tag TEST-42; by chance at most 1 in 10\d+\nother\.glbNo evidence of this key\ntorn\.glbCannot check: /);
   await result().getByText("has a chance of at most 3 in 1,000,000,000").waitFor();
   await picture("many-checked");
+  await assertFits();
 
   await dropped(onDisk("mine.glb", marked));
   await view().getByText("Check without sending the model").click();
@@ -72,7 +74,7 @@ unseen("several suspects are checked in one go, with several keys, and evidence 
   assert.equal(await headline(), "1 of 3 keys found");
   assert.match((await result().getByRole("listitem").allTextContents()).join("\n"), /^mine\.mmev, Test OwnerFound, with tag TEST-42; .*\nmine\.mmev, SomebodyNo evidence of this key\nmine\.mmev, line 4No evidence/);
   await result().getByText("That there are 3 keys is charged in each chance.").waitFor();
-});
+}, PHONE);
 
 unseen("files are taken in any order, and what is no model is told for what it is", async () => {
   const io = new NodeIO();

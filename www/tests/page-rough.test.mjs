@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before } from "node:test";
 import * as meshmark from "meshmark";
-import { button, check, drop, dropped, fillKey, headline, hold, mark, onDisk, page, result, saved, submitted, unseen, view } from "./page.mjs";
+import { assertFits, button, check, drop, dropped, fillKey, headline, hold, mark, NARROW, onDisk, page, PHONE, result, saved, submitted, unseen, view } from "./page.mjs";
 import { OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 
 let small;
@@ -44,7 +44,8 @@ unseen("a slip in the passphrase is seen before, and after: a copy says what it 
   assert.equal(await flag().isVisible(), false, "it is of what the form says again");
   await button("Show the passphrase").click();
   assert.equal(await again().isVisible(), false, "what is seen need not be typed again");
-});
+  await assertFits();
+}, NARROW);
 
 unseen("nothing that is finished disappears but by its owner’s act, and leaving asks first", async () => {
   const leave = async (answer) => {
@@ -83,6 +84,7 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   await leave(true);
   await view().getByText(/not downloaded since\. This browser keeps it/).waitFor();
   assert.equal(await copies.count(), 2, "they do not survive a reload");
+  await assertFits();
   await result().getByText(`small.marked.glb carries the tag NEXT of ${OWNER}`).waitFor();
   const stored = new Uint8Array(readFileSync(await saved(result().getByRole("button", { name: /^Download/ }))));
   assert.equal(await focused(), "Download small.marked.glb", "the focus is lost with the download");
@@ -100,7 +102,7 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   await page.reload();
   await page.getByText("Put your mark into a model").waitFor();
   assert.equal(await result().count(), 0, "what was downloaded or dismissed comes back");
-});
+}, PHONE);
 
 unseen("tabs are entries of the history", async () => {
   const tab = (name) => page.getByRole("tab", { name });

@@ -10,6 +10,8 @@ import { launch, serve } from "./browser.mjs";
 import { OWNER, PASSPHRASE, repository, TAG } from "./support.mjs";
 
 const DESKTOP = { width: 1280, height: 800 };
+export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+export const NARROW = { viewport: { width: 320, height: 640 }, forcedColors: "active" };
 const SLOW = 120_000;
 
 const pictures = new URL("test-output/", repository);
@@ -49,8 +51,8 @@ export function onPage(name, body, options = {}) {
 }
 
 /** The same in a browser without WebGL 2, for what has to do with no picture: the page goes without a preview. */
-export function unseen(name, body) {
-  onPage(name, body, { webgl: false });
+export function unseen(name, body, options = {}) {
+  onPage(name, body, { ...options, webgl: false });
 }
 
 /** @param options Playwright's of a context; `webgl`: whether there is WebGL */
@@ -106,8 +108,9 @@ async function open({ webgl = true, ...options }) {
 export async function drop(...paths) {
   const session = await context.newCDPSession(page);
   const data = { items: [], files: paths, dragOperationsMask: 1 };
+  const { width, height } = page.viewportSize();
   for (const type of ["dragEnter", "dragOver", "drop"]) {
-    await session.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
+    await session.send("Input.dispatchDragEvent", { type, x: width / 2, y: height / 2, data });
   }
 }
 
@@ -222,6 +225,13 @@ export async function savedReport() {
 export async function dropped(path) {
   await drop(path);
   await facts().getByText(basename(path), { exact: true }).waitFor();
+}
+
+/** Nothing is wider than the window. */
+export async function assertFits() {
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `${overflow} px too wide`);
+  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
 }
 
 /** Each control that can be reached has a name. */

@@ -14,7 +14,8 @@ export function capacityWords(capacity: Capacity): string | null {
   if (short.length === 0) {
     return null;
   }
+  const places = "Places are where symbols of a mark can stand.";
   return enough
-    ? `At most the ${CARRIERS[enough.name].home} of this model can hold a mark: ${lacking}.`
-    : `This model is too small or too regular to hold a mark: ${lacking}.`;
+    ? `At most the ${CARRIERS[enough.name].home} of this model can hold a mark: ${lacking}. ${places}`
+    : `This model is too small or too regular to hold a mark: ${lacking}. ${places}`;
 }

@@ -14,6 +14,7 @@ export abstract class Showing {
   readonly #intake: HTMLElement;
   readonly #facts: HTMLElement;
   readonly #words: HTMLElement;
+  #isOpening = false;
   /** How many models are on their way to a canvas. */
   #numLoading = 0;
 
@@ -37,8 +38,8 @@ export abstract class Showing {
     this.viewing.hidden = false;
     this.clear();
     this.facts(name);
+    this.#isOpening = true;
     this.#setUsable(false, `Opening ${name} …`);
-    this.viewing.setAttribute("aria-busy", "true");
     announce(`Opening ${name}`);
     if (hadFocus) {
       this.#facts.focus(); // the button that had it is gone
@@ -77,12 +78,13 @@ export abstract class Showing {
       await draw();
       isDrawn = true;
       if (isWanted()) {
+        this.#isOpening = false;
         this.#setUsable(true, "");
       }
     } catch (error) {
       console.warn("No preview:", error);
       if (isWanted()) {
-        this.#setUsable(false, `There is no picture: ${error instanceof Error ? error.message : String(error)}. All else works without it.`);
+        this.rest(`There is no picture: ${error instanceof Error ? error.message : String(error)}. All else works without it.`);
       }
     }
     this.#load(-1);
@@ -90,9 +92,9 @@ export abstract class Showing {
   }
 
   /** Rests the tools, for there is nothing to see. */
-  protected rest(words: string): void {
+  rest(words: string): void {
+    this.#isOpening = false;
     this.#setUsable(false, words);
-    this.viewing.setAttribute("aria-busy", "false");
   }
 
   protected tool<E extends HTMLElement = HTMLElement>(name: string): E {
@@ -106,15 +108,20 @@ export abstract class Showing {
   #setUsable(isUsable: boolean, words: string): void {
     this.#words.textContent = words;
     this.#words.hidden = isUsable;
-    this.canvases().forEach((canvas) => (canvas.hidden = !isUsable));
+    this.viewing.toggleAttribute("data-blank", !isUsable); // its canvases keep their sizes, which models are framed by
     for (const control of this.viewing.querySelectorAll<HTMLButtonElement | HTMLSelectElement>(".toolbar :is(button, select)")) {
       control.disabled = !isUsable;
     }
+    this.#tellBusy();
   }
 
   #load(change: 1 | -1): void {
     this.#numLoading += change;
-    this.viewing.setAttribute("aria-busy", String(this.#numLoading > 0));
+    this.#tellBusy();
+  }
+
+  #tellBusy(): void {
+    this.viewing.setAttribute("aria-busy", String(this.#isOpening || this.#numLoading > 0));
   }
 }
 

@@ -41,8 +41,11 @@ export class StudyStage extends Showing {
   }
 
   /** The model's name; its mesh follows. */
-  async show(model: Model): Promise<void> {
+  async show(model: Model, inspection: Inspection | null): Promise<void> {
     this.facts(model.name);
+    if (!inspection) {
+      this.rest("There is no picture.");
+    }
   }
 
   /** Says what the model was brought to, and looks at it from the front. */

@@ -213,6 +213,9 @@ export class Study extends View<StudyStage> {
   #fail(turn: number, error: unknown): void {
     if (turn === this.#turn) {
       this.#words.hidden = true;
+      if (!this.#mesh) {
+        this.stage.rest("There is no picture.");
+      }
       this.outcome.tell(errorCard(this.cannot, error));
     }
   }

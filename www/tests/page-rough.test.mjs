@@ -77,6 +77,11 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   assert.equal(await focused(), "Mark this model");
   assert.ok(await download().isVisible(), "what is cancelled takes the copy before it away");
 
+  await button("Mark this model").click();
+  await dropped(onDisk("small.glb", small));
+  await view().getByText("What was going on has been ended: another model came.").waitFor();
+  assert.ok(await tag().isEnabled());
+
   await hold(null);
   await submitted("Mark this model");
   const copies = page.getByRole("region", { name: "Finished copies" }).getByRole("listitem").filter({ hasText: "small.marked.glb" });

@@ -52,10 +52,10 @@ export class Outcome {
     this.#reveal(card);
   }
 
-  /** Says something beside what is finished, in place of what was said last; `null` takes that back. */
-  tell(card: HTMLElement | null): void {
-    this.#notice.replaceChildren(...(card ? [card] : []));
-    if (card) {
+  /** Says something beside what is finished, in place of what was said last; nothing takes that back. */
+  tell(...cards: HTMLElement[]): void {
+    this.#notice.replaceChildren(...cards);
+    for (const card of cards) {
       announceCard(card);
       card.scrollIntoView({ block: "nearest" });
     }

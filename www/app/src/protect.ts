@@ -280,7 +280,7 @@ export class Protect extends View<Stage> {
   async #markSeveral(found: Found[]): Promise<void> {
     this.#dropTrial();
     const [key, asked] = [keySource(), this.#asked()];
-    await this.run(`Marking ${found.length} models`, async (task) => {
+    const isDone = await this.run(`Marking ${found.length} models`, async (task) => {
       for (const [i, { name, open }] of found.entries()) {
         task.headline(`Marking ${i + 1} of ${found.length}: ${name}`);
         try {
@@ -297,9 +297,12 @@ export class Protect extends View<Stage> {
           this.#shelf.fail(name, error);
         }
       }
+      return true;
     });
     this.#shelf.fold();
-    this.#shelf.present(true);
+    if (isDone) {
+      this.#shelf.present(true);
+    }
   }
 
   /** The next strength, tried at once. */

@@ -86,7 +86,8 @@ export abstract class View<S extends Showing> {
     this.model = model;
     this.#tellSeveral(several);
     this.inspection = undefined;
-    this.outcome.tell(this.#stop() ? note("What was going on has been ended: another model came.") : null);
+    const ended = this.#stop() ? [note("What was going on has been ended: another model came.")] : [];
+    this.outcome.tell(...ended);
     this.stage.open(model.name);
     this.onOther();
     const [inspection, problem] = await this.#inspect(model);
@@ -95,7 +96,7 @@ export abstract class View<S extends Showing> {
     }
     this.inspection = inspection;
     if (problem) {
-      this.outcome.tell(problem);
+      this.outcome.tell(...ended, problem);
     }
     announce(`${model.name} is open.${problem ? ` ${problem.textContent}` : ""}`);
     await this.stage.show(model, inspection ?? null);
@@ -139,7 +140,7 @@ export abstract class View<S extends Showing> {
     this.#stop();
     this.model = undefined;
     this.#tellSeveral([]);
-    this.outcome.tell(null);
+    this.outcome.tell();
     this.stage.close();
     this.onOther();
   }
@@ -169,7 +170,7 @@ export abstract class View<S extends Showing> {
       return undefined;
     }
     const job = (this.#job = new Job(headline));
-    this.outcome.tell(null);
+    this.outcome.tell();
     this.outcome.work(job.card);
     this.#lock(true);
     const isOn = () => this.#job === job;

@@ -73,7 +73,7 @@ export class Break extends View<BreakStage> {
     }
     try {
       const found = modelsIn(files);
-      this.outcome.tell(null);
+      this.outcome.tell();
       for (const { name, open } of found) {
         this.#ask(this.#made(name, "a file of your own", false, bench.judge(await open())));
       }

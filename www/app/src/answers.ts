@@ -26,7 +26,8 @@ function words({ reading, isOther }: Answer): HTMLElement {
     return h("p", { class: "hint" }, VERDICTS[reading.verdict]);
   }
   const tag = h("code", {}, reading.tag ?? String(reading.number));
-  return h("p", {}, isOther ? "Found, with another tag: " : "Found, with tag ", tag, "; by chance ", chance(reading.lnP));
+  const from = reading.input === "evidence" ? "; read from evidence" : "";
+  return h("p", {}, isOther ? "Found, with another tag: " : "Found, with tag ", tag, "; by chance ", chance(reading.lnP), from);
 }
 
 /** What the number of suspects and keys does to the chances. */

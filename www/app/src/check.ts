@@ -5,7 +5,7 @@ import { capacityWords } from "./capacity";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keySource, severalKeys, type KeySource, type NamedKey } from "./key-form";
-import { renamed, type Found, type Model } from "./model";
+import { isEvidence, renamed, type Found, type Model } from "./model";
 import { actions, card, carrierTable, details, flag, note, numbers, readingRows } from "./outcome";
 import { evidenceOf, read, type Answer } from "./reading";
 import { checkReport, checksReport } from "./report";
@@ -20,7 +20,7 @@ const DO_NOT_PASS_ON = "Keep these figures to yourself. They follow your key: wh
 
 const PROVES = "It does not say who made the model first, nor who passed it on: keep your dated original and the report of marking it.";
 
-const EVIDENCE = "This was read from evidence, which says what whoever measured it likes: before you hold it against somebody, measure their model yourself.";
+const EVIDENCE = "Evidence was read, which says what whoever measured it likes: before you hold it against somebody, measure their model yourself.";
 
 /** An answer's card, and what was asked. */
 interface Asked {
@@ -143,6 +143,7 @@ export class Check extends View<Stage> {
       headline,
       [chargeWords(numSuspects, numKeys)],
       ...(found > 0 ? [h("p", { class: "hint" }, PROVES)] : []),
+      ...(lines.some((line) => isFound(line) && isEvidence({ name: line.suspect })) ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
       answersList(lines),
       actions(
         button("Save report (JSON)", async () => saveJson("checks.report.json", await checksReport(numSuspects, Math.max(numKeys, 1), expected, lines))),
@@ -178,7 +179,8 @@ async function readMany(suspect: Model, keys: NamedKey[], task: Task): Promise<L
   const evidence = await evidenceOf(client, suspect, task);
   task.stage("test");
   const readings = await client.extractMany(evidence, keys.map(({ bytes }) => bytes), { details: true, signal: task.signal });
-  return readings.map((reading, i) => ({ suspect: suspect.name, key: keys[i]!.name, answer: { reading: reading as DetailedExtraction, isOther: false } }));
+  const input = isEvidence(suspect) ? "evidence" : "model"; // what was handed in, not what it was measured to be
+  return readings.map((reading, i) => ({ suspect: suspect.name, key: keys[i]!.name, answer: { reading: { ...(reading as DetailedExtraction), input }, isOther: false } }));
 }
 
 function sentences(reading: DetailedExtraction): string[] {

@@ -123,7 +123,7 @@ export function keySource(): KeySource {
       stage("key");
       return client.deriveKey(name, secret, { signal });
     },
-    isInForm: () => source() === "passphrase" && owner.value === name && passphrase.value === secret,
+    isInForm: () => source() === "passphrase" && owner.value.trim() === name.trim() && passphrase.value === secret,
   };
 }
 

@@ -24,7 +24,7 @@ export interface Found {
 
 const MAIN = /\.(glb|gltf|vrm)$/i;
 const EVIDENCE = /\.mmev$/i;
-const [GLB_MAGIC, EVIDENCE_MAGIC] = [0x46546c67, 0x56454d4d];
+const GLB_MAGIC = 0x46546c67;
 
 /** What a file is that is no model, and what to do with it. */
 const OTHERS: [ending: RegExp, words: string][] = [
@@ -82,17 +82,13 @@ export function isGltf({ bytes }: Model): boolean {
   return !isGlb(bytes);
 }
 
-/** Whether it is no model, but what was measured of one. */
-export function isEvidence({ bytes }: Model): boolean {
-  return magicOf(bytes) === EVIDENCE_MAGIC;
+/** Whether it is no model, but what was measured of one. By its name alone: nobody may hand in evidence that passes for a model. */
+export function isEvidence({ name }: Pick<Model, "name">): boolean {
+  return EVIDENCE.test(name);
 }
 
 function isGlb(bytes: Uint8Array): boolean {
-  return magicOf(bytes) === GLB_MAGIC;
-}
-
-function magicOf(bytes: Uint8Array): number | null {
-  return bytes.length < 4 ? null : new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
+  return bytes.length >= 4 && new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true) === GLB_MAGIC;
 }
 
 /** `chair.glb` and `marked.glb` make `chair.marked.glb`. */

@@ -16,6 +16,15 @@ const again = () => page.locator("#passphrase-again");
 const tag = () => page.getByLabel("Tag", { exact: true });
 const flag = () => view().locator(".result[data-verdict=found] .flag");
 const download = () => view().getByRole("button", { name: "Download small.marked.glb" });
+/** Waits until the browser keeps so many copies. */
+const keeps = (number) =>
+  page.waitForFunction(async (number) => {
+    const done = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+    const database = await done(indexedDB.open("meshmark"));
+    const count = await done(database.transaction("copies").objectStore("copies").count());
+    database.close();
+    return count === number;
+  }, number);
 const focused = () => page.evaluate(() => document.activeElement.textContent);
 
 unseen("a slip in the passphrase is seen before, and after: a copy says what it was made with, and that the form says something else", async () => {
@@ -86,6 +95,7 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   await submitted("Mark this model");
   const copies = page.getByRole("region", { name: "Finished copies" }).getByRole("listitem").filter({ hasText: "small.marked.glb" });
   await copies.nth(1).waitFor();
+  await keeps(2);
   await leave(true);
   await view().getByText(/not downloaded since\. This browser keeps it/).waitFor();
   assert.equal(await copies.count(), 2, "they do not survive a reload");
@@ -96,14 +106,7 @@ unseen("nothing that is finished disappears but by its owner’s act, and leavin
   assert.equal(meshmark.detect(stored, meshmark.deriveKey(OWNER, PASSPHRASE)).tag, "NEXT");
   await copies.first().getByRole("button", { name: "Show small.marked.glb" }).click();
   await result().getByRole("button", { name: "Dismiss" }).click();
-  await page.waitForFunction(async () => {
-    const open = indexedDB.open("meshmark");
-    await new Promise((resolve) => (open.onsuccess = resolve));
-    const count = open.result.transaction("copies").objectStore("copies").count();
-    await new Promise((resolve) => (count.onsuccess = resolve));
-    open.result.close();
-    return count.result === 0;
-  });
+  await keeps(0);
   await page.reload();
   await page.getByText("Put your mark into a model").waitFor();
   assert.equal(await result().count(), 0, "what was downloaded or dismissed comes back");

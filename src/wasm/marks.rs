@@ -93,6 +93,27 @@ pub fn extract(evidence: &[u8], key: &[u8], options: JsValue) -> Result<JsValue,
     told(extraction, is_for_owner)
 }
 
+/// Reads a payload with every key of a list, and charges that there are many.
+#[wasm_bindgen(js_name = extractMany, skip_typescript)]
+pub fn extract_many(evidence: &[u8], keys: JsValue, options: JsValue) -> Result<Array, JsValue> {
+    let is_for_owner = Options::new(options, &["details"])?.is_set("details")?;
+    let key = |key: JsValue| {
+        let bytes = key.dyn_into::<Uint8Array>();
+        key_from(
+            &bytes
+                .map_err(|_| argument("keys are byte arrays"))?
+                .to_vec(),
+        )
+    };
+    let keys = keys
+        .dyn_into::<Array>()
+        .map_err(|_| argument("keys is an array of byte arrays"))?;
+    let keys = keys.iter().map(key).collect::<Result<Vec<_>, _>>()?;
+    let extractions = watermark::extract_many(&evidence_from(evidence)?, &keys);
+    let one = |extraction| told(extraction, is_for_owner);
+    extractions.into_iter().map(one).collect()
+}
+
 /// Tests an expected payload.
 #[wasm_bindgen(skip_typescript)]
 pub fn verify(

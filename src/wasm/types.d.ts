@@ -203,6 +203,12 @@ export function measure(model: Uint8Array, options?: MeasureOptions): Uint8Array
 export function extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions): Extraction;
 
 /**
+ * Reads evidence with every key of a list, as `extract` does with one, and in their order. That there are many is charged in all that is
+ * said: the probability that the mark of any of them is wrongly found is at most 1e-9.
+ */
+export function extractMany(evidence: Uint8Array, keys: Uint8Array[], options?: ReadOptions): Extraction[];
+
+/**
  * Tests evidence for one expected payload: stronger than `extract`, for it has no payload to guess. The payload must not come from
  * the suspect; payloads that are tried in turn add up, as keys do.
  */

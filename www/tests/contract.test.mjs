@@ -34,6 +34,7 @@ test("real results have exactly the declared shapes", () => {
   assert.deepEqual(contract.differences("Embedding", embedding), []);
   assert.deepEqual(contract.differences("Extraction", facade.extract(evidence, key)), []);
   assert.deepEqual(contract.differences("Extraction", facade.extract(evidence, wrongKey)), []);
+  facade.extractMany(evidence, [wrongKey, key]).forEach((reading) => assert.deepEqual(contract.differences("Extraction", reading), []));
   assert.deepEqual(contract.differences("Extraction", facade.detect(embedding.model, key)), []);
   assert.deepEqual(contract.differences("Extraction", facade.detect(model, key, { expected: TAG })), []);
   assert.deepEqual(contract.differences("DetailedExtraction", facade.detect(model, key, { expected: TAG, details: true })), []);

@@ -12,6 +12,7 @@ export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F
   embed: true,
   measure: true,
   extract: true,
+  extractMany: true,
   verify: true,
   detect: true,
   inspect: true,

@@ -122,6 +122,11 @@ test("detect reads at one go what measure, extract and verify read", async () =>
     assert.equal(typeof read({ details: true }).lnP, "number");
   }
   assert.deepEqual([meshmark.extract(evidence, key).input, meshmark.detect(model, key).input], ["evidence", "model"]);
+  const [one] = meshmark.extractMany(evidence, [key]);
+  const [not, ofTwo] = meshmark.extractMany(evidence, [stranger, key]);
+  assert.deepEqual([not.verdict, ...answer(ofTwo)], ["none", "found", "GO"]);
+  assert.ok(ofTwo.lnP > one.lnP && one.lnP === meshmark.extract(evidence, key).lnP, `${ofTwo.lnP} of two, ${one.lnP} of one`);
+  assert.throws(() => meshmark.extractMany(evidence, [key, "key"]), { code: "options.argument" });
   const fractions = [];
   meshmark.detect(model, stranger, { onProgress: (stage, fraction) => stage === "test" && fractions.push(fraction) });
   assert.ok(fractions.length > 1, "no hypothesis is heard of");

@@ -1,6 +1,7 @@
 // How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
 import assert from "node:assert/strict";
-import { button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, onDisk, onPage, context, page, picture, result, view } from "./page.mjs";
+import { readFileSync, writeFileSync } from "node:fs";
+import { assertFits, assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, NARROW, onDisk, onPage, PHONE, context, page, picture, result, view } from "./page.mjs";
 import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 onPage("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
@@ -13,6 +14,7 @@ onPage("raking light shows the geometry's own normals, whatever seams and normal
   await page.getByRole("tab", { name: "Check" }).click();
   await dropped(whole);
   const surface = await looks();
+  assert.ok((await middleOf(surface[0], 0.2)) < 180, "what has no material is lost on a light ground");
   await button("Raking light").press("Enter");
   assert.ok(await comeToLook((now) => !isSame(now, surface)), "the light is the same");
   const raking = await looks();
@@ -34,7 +36,7 @@ onPage("raking light shows the geometry's own normals, whatever seams and normal
 onPage("after one visit the page works without a network, through a reload", async () => {
   await page.getByText("Ready to work offline").waitFor();
   await context.setOffline(true);
-  await page.reload();
+  await page.goto(new URL("index.html", page.url()).href);
   await page.getByRole("button", { name: "Try the demo model" }).click();
   await facts().getByText("demo.glb").waitFor();
   await drawn();
@@ -45,6 +47,17 @@ onPage("after one visit the page works without a network, through a reload", asy
   await page.getByRole("tab", { name: "Break" }).click();
   await button("Try noise 0.1 %").click();
   await view().locator('tr[data-state="done"]').waitFor();
+
+  await context.setOffline(false);
+  const worker = new URL("../app/dist/sw.js", import.meta.url);
+  const script = readFileSync(worker, "utf8");
+  writeFileSync(worker, `${script}// another version`);
+  try {
+    await page.evaluate(() => navigator.serviceWorker.ready.then((registration) => registration.update()));
+    await page.getByText("A new version waits").waitFor();
+  } finally {
+    writeFileSync(worker, script);
+  }
 });
 
 onPage("the keyboard does all of it", async () => {
@@ -62,6 +75,7 @@ onPage("the keyboard does all of it", async () => {
   assert.equal(await focused(), "Choose files");
   await press("Tab", "Tab", "Enter");
   await facts().getByText("demo.glb").waitFor();
+  assert.match(await focused(), /^demo\.glb/, "the focus is lost with the button");
 
   await canvas().focus();
   await page.locator("#preview").getByText("Tried with a key made for this preview.").waitFor(); // nothing else changes the view from here
@@ -77,42 +91,40 @@ onPage("the keyboard does all of it", async () => {
   await page.keyboard.type(PASSPHRASE);
   await press("Tab", "Space");
   assert.equal(await page.locator("#passphrase").getAttribute("type"), "text");
-  await press("Tab");
+  await press("Tab"); // to the tag: what is shown is not typed twice
   await page.keyboard.type(TAG);
   await press("Enter");
   await result().waitFor();
   assert.match(await page.locator("#announcer").textContent(), /^Your mark is in the copy/);
-});
+  assert.equal(await focused(), "Your mark is in the copy");
+  await press("Tab");
+  assert.equal(await focused(), "Download demo.marked.glb");
+  await Promise.all([page.waitForEvent("download"), press("Enter")]);
+  assert.equal(await focused(), "Download demo.marked.glb");
 
-onPage("every control has a name", async () => {
-  await page.getByRole("button", { name: "Try the demo model" }).click();
-  await facts().getByText("demo.glb").waitFor();
-  await assertNamed();
-  await page.getByRole("tab", { name: "Study" }).click();
-  await page.locator("#traced").getByText("Ranked anew").waitFor();
-  await assertNamed();
-  await page.getByRole("tab", { name: "Protect" }).click();
-  await mark();
-  await button("Try to break it").click();
-  await button("Try noise 0.1 %").click();
-  await view().locator('tr[data-state="done"]').waitFor();
-  await assertNamed();
+  const tabTo = async (name) => {
+    for (let i = 0; i < 50 && (await focused()) !== name; i++) {
+      await press("Tab");
+    }
+    assert.equal(await focused(), name);
+  };
+  await tabTo("Check this copy");
+  await press("Enter");
+  assert.equal(await focused(), "Check");
+  await tabTo("Check this model");
+  await press("Enter");
+  await result().waitFor();
+  assert.equal(await focused(), "Your mark was found");
+  await tabTo("Dismiss");
+  await press("Enter");
+  assert.equal(await focused(), "Check this model");
 });
-
-async function assertNamed() {
-  const controls = await page.locator("button:visible, input:visible, select:visible, canvas[tabindex]:visible").all();
-  assert.ok(controls.length > 10);
-  for (const control of controls) {
-    const name = (await control.ariaSnapshot()).match(/"(.+)"/)?.[1];
-    assert.ok(name, await control.evaluate((element) => element.outerHTML));
-  }
-}
 
 for (const [name, options] of [
   ["desktop-light", {}],
   ["desktop-dark", { colorScheme: "dark" }],
-  ["mobile", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
-  ["narrow", { viewport: { width: 320, height: 640 } }],
+  ["mobile", PHONE],
+  ["narrow", NARROW],
 ]) {
   const fits = async () => {
     await picture(`${name}-empty`);
@@ -121,20 +133,63 @@ for (const [name, options] of [
     await drawn();
     await picture(`${name}-marked`);
     await assertFits();
+    for (const seen of [result().getByRole("heading", { level: 2 }), button("Download demo.marked.glb")]) {
+      const { y, height } = await seen.boundingBox();
+      assert.ok(y >= 0 && y + height <= page.viewportSize().height, `what came of it is out of sight, at ${y} px`);
+    }
+    await assertNamed();
+    if (options.forcedColors) {
+      const [chosen, other] = await Promise.all(["Marked", "Original"].map((name) => button(name).evaluate((control) => getComputedStyle(control).backgroundColor)));
+      assert.notEqual(chosen, other, "what is chosen is not seen");
+    }
+    if (options.hasTouch) {
+      await assertTouch();
+    }
     await button("Try to break it").click();
     await button("Try noise 0.1 %").click();
     await view().locator('tr[data-state="done"]').waitFor();
+    const now = page.locator("#break-now", { hasText: /^Noise 0\.1 %Found/ });
+    assert.equal(await now.isVisible(), page.viewportSize().width < 860, "on a small screen it is seen that something was tried");
     await drawn();
     await picture(`${name}-broken`);
     await assertFits();
+    await assertNamed();
   };
   onPage(`the page fits ${name}`, fits, options);
 }
 
-async function assertFits() {
-  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  assert.ok(overflow <= 0, `${overflow} px too wide`);
-  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
+/** One finger scrolls the page past the model; after a tap it turns the model. */
+async function assertTouch() {
+  await canvas().scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await canvas().boundingBox();
+  const session = await context.newCDPSession(page);
+  const touch = (type, ...touchPoints) => session.send("Input.dispatchTouchEvent", { type, touchPoints });
+  const finger = (moved) => ({ x: x + width / 2, y: y + height / 2 - moved });
+  const before = await page.evaluate(() => scrollY);
+  await touch("touchStart", finger(0));
+  for (const moved of [20, 40, 60, 80, 100]) {
+    await touch("touchMove", finger(moved));
+  }
+  await touch("touchEnd");
+  await page.waitForFunction((before) => scrollY > before + 20, before); // it gets past the model
+  await canvas().scrollIntoViewIfNeeded();
+  await canvas().tap();
+  assert.equal(await canvas().evaluate((canvas) => getComputedStyle(canvas).touchAction), "none");
+  await page.evaluate(() => document.activeElement.blur());
+}
+
+/** How light the picture is at its middle, or beside it by a share of its width: 0 to 255. */
+function middleOf(png, aside) {
+  return page.evaluate(
+    async ([base64, aside]) => {
+      const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      const image = await createImageBitmap(new Blob([bytes]));
+      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return context.getImageData(image.width * (0.5 + aside), image.height / 2, 1, 1).data[1];
+    },
+    [png.toString("base64"), aside],
+  );
 }
 
 /** A torus with bumps, its triangles turned outwards. */

@@ -1,7 +1,7 @@
 // Study: the paper's experiment on a model.
 import assert from "node:assert/strict";
 import * as meshmark from "meshmark";
-import { button, comeToLook, drop, dropped, facts, headline, isSame, looks, onDisk, onPage, page, result, unseen, view, workersAre } from "./page.mjs";
+import { assertNamed, button, comeToLook, drop, dropped, facts, headline, isSame, looks, onDisk, onPage, page, result, unseen, view, workersAre } from "./page.mjs";
 import { CUBE, glbFromObj } from "./support.mjs";
 
 onPage("the study begins with the model in Protect, in a worker that was not there before, and is measured until it is cancelled", async () => {
@@ -32,6 +32,8 @@ onPage("the study begins with the model in Protect, in a worker that was not the
     await view().locator(".legend", { hasText: said }).waitFor();
   }
 
+  await assertNamed();
+
   await page.getByLabel("Smoothing").selectOption("laplacian");
   await button("Measure Table I and Fig. 5").click();
   await page.getByRole("region", { name: "Table I" }).locator("tbody tr:not(.rule)").nth(8).waitFor();
@@ -57,5 +59,5 @@ unseen("what is wrong with a study is said in words", async () => {
   await view().getByText("Give a whole number from 1 to 8.").waitFor();
   await hosts.fill("8");
   await button("Measure Table I and Fig. 5").click();
-  await view().getByText(/^Not measured: /).waitFor(); // a cube has no thousand hosts
+  await result().getByText(/^Cannot study: /).waitFor(); // a cube has no thousand hosts
 });

@@ -10,6 +10,8 @@ import { launch, serve } from "./browser.mjs";
 import { OWNER, PASSPHRASE, repository, TAG } from "./support.mjs";
 
 const DESKTOP = { width: 1280, height: 800 };
+export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+export const NARROW = { viewport: { width: 320, height: 640 }, forcedColors: "active" };
 const SLOW = 120_000;
 
 const pictures = new URL("test-output/", repository);
@@ -19,7 +21,7 @@ let server;
 let browser;
 export let context;
 export let page;
-/** What must stay empty: requests to elsewhere, policy violations, script errors, dialogs. */
+/** What must stay empty: requests to elsewhere, policy violations, script errors, dialogs but the one before leaving. */
 let offences;
 
 before(async () => {
@@ -49,8 +51,8 @@ export function onPage(name, body, options = {}) {
 }
 
 /** The same in a browser without WebGL 2, for what has to do with no picture: the page goes without a preview. */
-export function unseen(name, body) {
-  onPage(name, body, { webgl: false });
+export function unseen(name, body, options = {}) {
+  onPage(name, body, { ...options, webgl: false });
 }
 
 /** @param options Playwright's of a context; `webgl`: whether there is WebGL */
@@ -66,6 +68,7 @@ async function open({ webgl = true, ...options }) {
   await context.addInitScript(() => {
     globalThis.violations = [];
     globalThis.asked = []; // what workers were asked to do
+    globalThis.held = null; // what they do not come to hear of, so that it goes on until it is ended
     globalThis.workers = new Set(); // those that were not ended
     globalThis.Worker = class extends Worker {
       constructor(...args) {
@@ -74,7 +77,9 @@ async function open({ webgl = true, ...options }) {
       }
       postMessage(message, ...rest) {
         asked.push(message.name);
-        super.postMessage(message, ...rest);
+        if (message.name !== held) {
+          super.postMessage(message, ...rest);
+        }
       }
       terminate() {
         workers.delete(this);
@@ -94,7 +99,7 @@ async function open({ webgl = true, ...options }) {
   page = await context.newPage();
   page.setDefaultTimeout(SLOW);
   page.on("pageerror", (error) => offences.push(`error ${error.message}`));
-  page.on("dialog", (dialog) => offences.push(`dialog ${dialog.message()}`));
+  page.on("dialog", (dialog) => dialog.type() !== "beforeunload" && offences.push(`dialog ${dialog.message()}`));
   page.on("console", (message) => /content security policy/i.test(message.text()) && offences.push(message.text()));
   await page.goto(server.origin);
 }
@@ -103,8 +108,9 @@ async function open({ webgl = true, ...options }) {
 export async function drop(...paths) {
   const session = await context.newCDPSession(page);
   const data = { items: [], files: paths, dragOperationsMask: 1 };
+  const { width, height } = page.viewportSize();
   for (const type of ["dragEnter", "dragOver", "drop"]) {
-    await session.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
+    await session.send("Input.dispatchDragEvent", { type, x: width / 2, y: height / 2, data });
   }
 }
 
@@ -115,13 +121,17 @@ export function onDisk(name, bytes) {
 }
 
 export const view = () => page.locator(".view:visible");
-export const result = () => view().locator(".result");
+/** What was said or finished last. */
+export const result = () => view().locator(".result").first();
 export const headline = () => result().getByRole("heading", { level: 2 }).textContent();
 export const facts = () => view().locator(".facts");
 export const canvas = () => view().getByRole("application");
 export const button = (name) => view().getByRole("button", { name, exact: true });
 export const picture = (name) => page.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
 export const pictureOf = (locator, name) => locator.screenshot({ path: fileURLToPath(new URL(`${name}.png`, pictures)) });
+
+/** From now on workers do not hear of a function: what calls it goes on until it is ended. `null`: they hear of all. */
+export const hold = (name) => page.evaluate((name) => void (globalThis.held = name), name);
 
 /** Waits until so many workers are at work. */
 export const workersAre = (count) => page.waitForFunction((count) => workers.size === count, count);
@@ -174,24 +184,34 @@ export function isSame(now, before) {
 export async function fillKey(passphrase = PASSPHRASE) {
   await page.getByLabel("Owner’s name").fill(OWNER);
   await page.getByLabel("Passphrase", { exact: true }).and(page.locator("input:not([type=radio])")).fill(passphrase);
+  const again = page.getByLabel("The same passphrase again");
+  if (await again.isVisible()) {
+    await again.fill(passphrase); // where a new one is chosen
+  }
 }
 
 export async function mark(tag = TAG) {
   await fillKey();
   await page.getByLabel("Tag", { exact: true }).fill(tag);
-  await page.getByRole("button", { name: "Mark this model" }).click();
-  await result().waitFor();
+  await submitted("Mark this model");
 }
 
 export async function check(passphrase = PASSPHRASE) {
   await fillKey(passphrase);
-  await page.getByRole("button", { name: "Check this model" }).click();
+  await submitted("Check this model");
+}
+
+/** Presses the button of a form, and waits until what it begins has come to its end. */
+export async function submitted(name) {
+  await button(name).click();
+  await view().locator(".working").waitFor({ state: "detached" });
   await result().waitFor();
 }
 
-/** Presses a button that saves a file; returns where it is. */
-export async function saved(name) {
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+/** Presses a button that saves a file, by its name or itself; returns where it is. */
+export async function saved(control) {
+  const button = typeof control === "string" || control instanceof RegExp ? page.getByRole("button", { name: control }) : control;
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
   const path = join(folder, download.suggestedFilename());
   await download.saveAs(path);
   return path;
@@ -205,6 +225,21 @@ export async function savedReport() {
 export async function dropped(path) {
   await drop(path);
   await facts().getByText(basename(path), { exact: true }).waitFor();
+}
+
+/** Nothing is wider than the window. */
+export async function assertFits() {
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `${overflow} px too wide`);
+  assert.ok((await page.evaluate(() => innerWidth)) <= page.viewportSize().width, "the page is zoomed out to fit");
+}
+
+/** Each control that can be reached has a name. */
+export async function assertNamed() {
+  const seen = await page.locator("body").ariaSnapshot();
+  const controls = seen.match(/^ *- (button|textbox|combobox|checkbox|radio|slider|spinbutton|tab|application)\b.*$/gm);
+  assert.ok(controls.length > 10, seen);
+  assert.deepEqual(controls.filter((control) => !/"[^"]+"/.test(control)), []);
 }
 
 /** Moves an attack's slider to a level, wherever that is among them. */

@@ -1,81 +1,199 @@
-/** Check: a suspect and a key in, one sentence out. */
-import type { DetailedExtraction } from "meshmark";
+/** Check: a suspect and a key in, one sentence out; several suspects or keys, and a line for each. */
+import type { DetailedExtraction, Inspection } from "meshmark";
+import { answersList, chargeWords, isFound, type Line } from "./answers";
+import { capacityWords } from "./capacity";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
-import { incompleteKeyField, keyMaker, type KeyMaker } from "./key-form";
-import { renamed, type Model } from "./model";
-import { actions, card, carrierTable, details, numbers, present, readingRows } from "./outcome";
-import { detect } from "./reading";
-import { checkReport } from "./report";
-import { saveJson } from "./save";
+import { incompleteKeyField, keySource, severalKeys, type KeySource, type NamedKey } from "./key-form";
+import { isEvidence, renamed, type Found, type Model } from "./model";
+import { actions, card, carrierTable, details, flag, note, numbers, readingRows } from "./outcome";
+import { evidenceOf, read, type Answer } from "./reading";
+import { checkReport, checksReport } from "./report";
+import { save, saveJson } from "./save";
 import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
-import { runTask, type Progress } from "./task";
+import type { Task } from "./task";
 import { View } from "./view";
-import { homes, VERDICTS } from "./words";
+import { homes, plain, VERDICTS } from "./words";
 
 const DO_NOT_PASS_ON = "Keep these figures to yourself. They follow your key: whoever gets enough of them, for models of their own making, can make one in which your mark is found.";
 
+const PROVES = "It does not say who made the model first, nor who passed it on: keep your dated original and the report of marking it.";
+
+const EVIDENCE = "Evidence was read, which says what whoever measured it likes: before you hold it against somebody, measure their model yourself.";
+
+/** An answer's card, and what was asked. */
+interface Asked {
+  card: HTMLElement;
+  model: Model;
+  keys: Pick<KeySource, "isInForm">;
+  expected: string | null;
+}
+
 export class Check extends View<Stage> {
+  protected override readonly isEvidenceWanted = true;
   readonly #expected = find<HTMLInputElement>("#expected");
+  #asked: Asked | undefined;
 
   constructor(root: HTMLElement) {
     super(root, "Cannot check", Stage);
     watchTag(this.#expected);
+    this.#expected.addEventListener("input", () => this.onOther());
+    find("#save-evidence").addEventListener("click", () => void this.#saveEvidence());
+  }
+
+  protected override foresee({ capacity }: Inspection): HTMLElement | null {
+    const words = capacityWords(capacity);
+    return words === null ? null : note(words);
+  }
+
+  /** Says whether the answer still is to what the form asks. */
+  override onOther(): void {
+    if (this.#asked) {
+      const { card, model, keys, expected } = this.#asked;
+      const now = this.#expected.value || null;
+      const others = [
+        ...(model === this.model ? [] : [this.model ? `the model ${this.model.name}` : "no model"]),
+        ...(keys.isInForm() ? [] : ["another key"]),
+        ...(expected === now ? [] : [now === null ? "no tag to look for" : `the tag ${now} to look for`]),
+      ];
+      flag(card, others, "This answer is to what it said before.");
+    }
   }
 
   protected async submit(): Promise<void> {
     const keyField = incompleteKeyField();
-    const problem = tagProblem(this.#expected.value);
+    const keys = severalKeys();
+    const expected = this.#expected.value || null;
+    const problem = keys.length > 0 && expected !== null ? "With several keys the tag is read, not looked for: leave this empty." : tagProblem(this.#expected.value);
     setProblem(this.#expected, problem);
     const model = this.ready(keyField ?? (problem ? this.#expected : null));
     if (!model) {
       return;
     }
-    const [expected, key] = [this.#expected.value || null, keyMaker()];
-    await this.run(async (controller) => {
-      const reading = await runTask(this.outcome, controller, (progress) => read(model, expected, key, progress));
-      if (reading && model === this.model) {
-        present(this.outcome, this.#card(model, expected, reading));
-      }
-    });
+    if (keys.length > 0 || this.several.length > 1) {
+      await this.#checkSeveral(model, keys, expected);
+      return;
+    }
+    const key = keySource();
+    const answer = await this.run(`Checking ${model.name}`, async (task) => read(await engine, model, key.make, expected, task));
+    if (answer) {
+      this.#show({ card: this.#card(model, key, expected, answer), model, keys: key, expected });
+    }
   }
 
-  #card(model: Model, expected: string | null, reading: DetailedExtraction): HTMLElement {
-    const [figures, carriers] = [numbers(readingRows(reading)), carrierTable(reading.carriers)];
-    const file = numbers([["SHA-256", h("code", { class: "hash" }, this.inspection?.sha256 ?? "unknown")]]);
+  async #checkSeveral(model: Model, keys: NamedKey[], expected: string | null): Promise<void> {
+    const suspects: Found[] = this.several.length > 1 ? this.several : [{ name: model.name, open: async () => model }];
+    const one = keys.length > 0 ? null : keySource();
+    const lines = await this.run("Checking", async (task) => {
+      const lines: Line[] = [];
+      for (const [i, { name, open }] of suspects.entries()) {
+        task.headline(`Checking ${i + 1} of ${suspects.length}: ${name}`);
+        try {
+          const suspect = await open();
+          lines.push(...(one ? [{ suspect: name, key: null, answer: await read(await engine, suspect, one.make, expected, task) }] : await readMany(suspect, keys, task)));
+        } catch (error) {
+          if (task.signal.aborted) {
+            throw error;
+          }
+          lines.push({ suspect: name, error });
+        }
+      }
+      return lines;
+    });
+    if (lines) {
+      const isInForm = () => (one ? one.isInForm() : severalKeys() === keys);
+      this.#show({ card: this.#linesCard(lines, suspects.length, keys.length, expected), model, keys: { isInForm }, expected });
+    }
+  }
+
+  /** What is measured of the model: whoever has the key can check it, without the model, and without telling the key. */
+  async #saveEvidence(): Promise<void> {
+    const model = this.ready(null);
+    if (!model) {
+      return;
+    }
+    const evidence = await this.run(`Measuring ${model.name}`, async (task) => evidenceOf(await engine, model, task));
+    if (evidence) {
+      const name = renamed(model.name, "mmev");
+      save(name, evidence.slice());
+      this.outcome.tell(note(`Saved as ${name}. Whoever has the key drops it here, instead of the model.`));
+    }
+  }
+
+  #show(asked: Asked): void {
+    this.#asked = asked;
+    this.outcome.finish(asked.card);
+    this.outcome.present(asked.card);
+    this.onOther();
+  }
+
+  #dismiss(): void {
+    this.#asked = undefined;
+    this.outcome.finish();
+    find("button[type=submit]", this.form).focus();
+  }
+
+  #linesCard(lines: Line[], numSuspects: number, numKeys: number, expected: string | null): HTMLElement {
+    const found = lines.filter(isFound).length;
+    const of = numKeys > 0 ? `${numKeys} keys` : `${numSuspects} models`;
+    const headline = numKeys > 0 && numSuspects > 1 ? `${found} marks found: ${numKeys} keys in ${numSuspects} models` : numKeys > 0 ? `${found} of ${of} found` : `Your mark was found in ${found} of ${of}`;
     return card(
-      reading.verdict,
-      VERDICTS[reading.verdict],
-      sentences(reading),
+      found > 0 ? "found" : "none",
+      headline,
+      [chargeWords(numSuspects, numKeys)],
+      ...(found > 0 ? [h("p", { class: "hint" }, PROVES)] : []),
+      ...(lines.some((line) => isFound(line) && isEvidence({ name: line.suspect })) ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
+      answersList(lines),
+      actions(
+        button("Save report (JSON)", async () => saveJson("checks.report.json", await checksReport(numSuspects, Math.max(numKeys, 1), expected, lines))),
+        button("Dismiss", () => this.#dismiss()),
+      ),
+    );
+  }
+
+  #card(model: Model, key: KeySource, expected: string | null, { reading, isOther }: Answer): HTMLElement {
+    const [figures, carriers] = [numbers(readingRows(reading)), carrierTable(reading.carriers)];
+    const sha256 = this.inspection?.sha256 ?? null;
+    const file = numbers([["SHA-256", h("code", { class: "hash" }, sha256 ?? "unknown")]]);
+    const name = reading.tag ?? String(reading.number);
+    return card(
+      isOther ? "partial" : reading.verdict,
+      isOther ? `Your key’s mark, with ${reading.tag === null ? "number" : "tag"} ${name}, not ${expected}` : VERDICTS[reading.verdict],
+      [`${model.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${expected === null ? "" : `, looked at for the tag ${expected}`}.`, ...sentences(reading)],
+      ...(reading.input === "evidence" && reading.verdict === "found" ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
       ...(reading.verdict === "found"
-        ? [figures, details("Carriers and file", carriers, file)]
+        ? [h("p", { class: "hint" }, PROVES), figures, details("Carriers and file", carriers, file)]
         : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures, carriers), details("File", file)]),
-      actions(button("Save report (JSON)", async () => saveJson(renamed(model.name, "report.json"), await checkReport(model, this.inspection?.sha256 ?? null, expected, reading)))),
+      actions(
+        button("Save report (JSON)", async () => saveJson(renamed(model.name, "report.json"), await checkReport(model.name, sha256, expected, reading))),
+        button("Dismiss", () => this.#dismiss()),
+      ),
     );
   }
 }
 
-async function read(model: Model, expected: string | null, makeKey: KeyMaker, progress: Progress): Promise<DetailedExtraction> {
+/** Reads a suspect with every key; the number of keys is charged. */
+async function readMany(suspect: Model, keys: NamedKey[], task: Task): Promise<Line[]> {
   const client = await engine;
-  const key = await makeKey(client, progress);
-  progress.stage("read");
-  try {
-    return await detect(client, model, key, expected, progress);
-  } finally {
-    key.fill(0);
-  }
+  const evidence = await evidenceOf(client, suspect, task);
+  task.stage("test");
+  const readings = await client.extractMany(evidence, keys.map(({ bytes }) => bytes), { details: true, signal: task.signal });
+  const input = isEvidence(suspect) ? "evidence" : "model"; // what was handed in, not what it was measured to be
+  return readings.map((reading, i) => ({ suspect: suspect.name, key: keys[i]!.name, answer: { reading: { ...(reading as DetailedExtraction), input }, isOther: false } }));
 }
 
 function sentences(reading: DetailedExtraction): string[] {
   const { verdict, reason, tag } = reading;
-  const why = reason === null ? [] : [reason];
+  const why = reason === null ? [] : [plain(reason)];
   const where = homes(reading);
   switch (verdict) {
     case "found":
-      return [...(tag === null ? why : [`This model carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
+      return [...(tag === null ? why : [`It carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
     case "none":
-      return ["This does not prove that the model is not yours.", ...why];
+      return ["What was read agrees with this key no better than by chance. This does not prove that the model is not yours."];
+    case "cannot-check":
+      return ["The model is too small or too simple to tell."];
     default:
       return why;
   }

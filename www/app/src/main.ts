@@ -29,11 +29,12 @@ const protect = new Protect(find("#protect"), {
 const study = new Study(find("#study"));
 const views = [protect, check, attack, study];
 
-startKeyForm(() => protect.onOtherMark());
+startKeyForm(() => views.forEach((view) => view.onOther()));
 const select = startTabs([protectTab, checkTab, breakTab, studyTab], (panel) => {
   if (panel !== study.root) {
-    placeKeyForm(panel);
+    placeKeyForm(panel, { isNew: panel === protect.root, areSeveral: panel === check.root });
   }
+  check.onOther();
   protect.onShown(panel === protect.root);
   attack.onShown(panel === attack.root, protect.marked);
   study.onShown(panel === study.root, protect.shown);
@@ -44,7 +45,11 @@ function go(tab: HTMLElement): void {
   tab.focus();
 }
 
-select(protectTab);
+addEventListener("beforeunload", (event) => {
+  if (protect.isAnythingLeft || views.some(({ isBusy }) => isBusy)) {
+    event.preventDefault(); // the browser asks
+  }
+});
 
 onDrop((files) => void views.find(({ root }) => !root.hidden)?.takeFiles(files));
 

@@ -5,7 +5,11 @@ export async function startOffline(): Promise<void> {
   if (!import.meta.env.PROD || !("serviceWorker" in navigator)) {
     return;
   }
-  await navigator.serviceWorker.register("./sw.js");
+  const registration = await navigator.serviceWorker.register("./sw.js");
   await navigator.serviceWorker.ready;
-  find("#offline").textContent = "Ready to work offline";
+  const tell = () => {
+    find("#offline").textContent = registration.waiting ? "A new version waits: it comes when every tab with this page is closed" : "Ready to work offline";
+  };
+  registration.addEventListener("updatefound", () => registration.installing?.addEventListener("statechange", tell));
+  tell();
 }

@@ -1,26 +1,26 @@
-/** Protect: a model and a key in, a marked copy out. */
-import type { Carrier, EmbedOptions, Embedding, EmbedReport, Inspection, Strength } from "meshmark";
-import { button, find, h, setProblem } from "./dom";
+/** Protect: a model and a key in, a marked copy out; or several models, and as many copies. */
+import type { Carrier, DetailedExtraction, EmbedOptions, Embedding, Inspection } from "meshmark";
+import { button, find, setProblem } from "./dom";
+import { capacityWords } from "./capacity";
+import { copyOf, type Asked, type Copy, type Preset } from "./copy";
 import { engine } from "./engine";
-import { incompleteKeyField, isKeyComplete, keyMaker, strangerKey, type KeyMaker } from "./key-form";
-import { isGltf, renamed, type Model } from "./model";
-import { actions, card, carrierTable, details, displacement, forecastList, note, numbers, present, readingRows } from "./outcome";
+import { incompleteKeyField, isKeyComplete, keySource, strangerKey, type KeyMaker, type KeySource } from "./key-form";
+import type { Found, Model } from "./model";
+import { actions, card, note } from "./outcome";
 import { Preview } from "./preview";
-import { embedReport } from "./report";
-import { save, saveJson } from "./save";
+import { detect, withKey } from "./reading";
+import { Shelf } from "./shelf";
 import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
-import { runTask, type Progress } from "./task";
+import type { Progress } from "./task";
 import { Trial } from "./trial";
 import { View } from "./view";
-import { CARRIERS, count, losses, significant } from "./words";
-
-type Preset = Extract<Strength, string>;
+import { CARRIERS } from "./words";
 
 const STRENGTHS: Record<Preset, string> = {
-  subtle: "For surfaces seen very close. RMS displacement at most 0.02 % of the model’s diagonal, less where it is smooth.",
-  balanced: "For most models. RMS displacement at most 0.04 % of the model’s diagonal, less where it is smooth.",
-  strong: "Survives more; look at smooth, shiny surfaces first. RMS displacement at most 0.08 % of the model’s diagonal.",
+  subtle: "For surfaces seen very close. Vertices move by at most 0.02 % of the model’s size on average, less where it is smooth.",
+  balanced: "For most models. Vertices move by at most 0.04 % of the model’s size on average, less where it is smooth.",
+  strong: "Survives more; look at smooth, shiny surfaces first. Vertices move by at most 0.08 % of the model’s size on average.",
 };
 
 /** How long a person must have rested, in milliseconds, before what they chose is tried. */
@@ -36,23 +36,37 @@ export interface ProtectEvents {
   onBreak(): void;
 }
 
+/** What was looked for in a model before it is marked, and whether its owner wants a second mark all the same. */
+interface Looked {
+  model: Model;
+  key: KeySource;
+  /** The mark of this key that is there; `null` where none is. */
+  reading: DetailedExtraction | null;
+  isWanted: boolean;
+}
+
+/** What marking comes to: a copy, or the mark that is there already. */
+export type Marking = { embedding: Embedding } | { already: DetailedExtraction };
+
 export class Protect extends View<Stage> {
   readonly #tag = find<HTMLInputElement>("#tag");
   readonly #strength = find<HTMLSelectElement>("#strength");
   readonly #carriers = [...find("#carriers").querySelectorAll("input")];
-  readonly #preview = new Preview();
+  readonly #preview = new Preview(() => this.#stronger());
+  readonly #shelf: Shelf;
   /** The embedding that the form asks for now, or one like it by another key. */
-  #trial: Trial | undefined;
+  #trial: Trial<Marking> | undefined;
   #timer = 0;
-  /** While the finished copy of this model stands there, nothing is tried. */
-  #marked: Model | undefined;
+  #looked: Looked | undefined;
 
   /** @param events what can be done with the marked copy in other views */
-  constructor(
-    root: HTMLElement,
-    readonly events: ProtectEvents,
-  ) {
+  constructor(root: HTMLElement, events: ProtectEvents) {
     super(root, "Cannot mark", Stage);
+    const onStronger = () => {
+      this.#stronger();
+      void this.submit();
+    };
+    this.#shelf = new Shelf(this.outcome, { ...events, onStronger }, () => ({ model: this.model, asked: this.#asked() }));
     watchTag(this.#tag);
     const hint = find("#strength-hint");
     const describe = () => (hint.textContent = STRENGTHS[this.#strength.value as Preset]);
@@ -61,7 +75,7 @@ export class Protect extends View<Stage> {
       this.#onOtherLook();
     });
     describe();
-    this.#tag.addEventListener("input", () => this.onOtherMark());
+    this.#tag.addEventListener("input", () => this.onOther());
     for (const box of this.#carriers) {
       find(`#${box.id}-hint`).textContent = CARRIERS[box.value as Carrier].survives;
       box.addEventListener("change", () => {
@@ -70,22 +84,12 @@ export class Protect extends View<Stage> {
       });
     }
     this.#keepOne(); // a reload may bring back what was chosen before
+    void this.#shelf.restore();
   }
 
   protected override foresee({ capacity }: Inspection): HTMLElement | null {
-    const short = capacity.filter(isShort);
-    const lacking = short
-      .map(({ name, addresses, neededAddresses }) => `its ${CARRIERS[name].home} offers ${count(addresses)} of the ${count(neededAddresses)} places that are needed`)
-      .join(", ");
-    const [enough] = capacity.filter((carrier) => !short.includes(carrier));
-    if (short.length === 0) {
-      return null;
-    }
-    return note(
-      enough
-        ? `At most the ${CARRIERS[enough.name].home} of this model can hold a mark: ${lacking}.`
-        : `This model is too small or too regular to hold a mark: ${lacking}.`,
-    );
+    const words = capacityWords(capacity);
+    return words === null ? null : note(words);
   }
 
   /** A mark needs a carrier: the last one cannot be taken away. */
@@ -100,9 +104,13 @@ export class Protect extends View<Stage> {
     return this.#carriers.filter((box) => box.checked);
   }
 
-  override async take(model: Model): Promise<void> {
+  #asked(): Asked {
+    return { tag: this.#tag.value, strength: this.#strength.value as Preset, carriers: this.#chosenBoxes().map((box) => box.value as Carrier) };
+  }
+
+  override async take(model: Model, several: Found[] = []): Promise<void> {
     this.#forget();
-    await super.take(model);
+    await super.take(model, several);
     if (model === this.model) {
       this.#tryLater();
     }
@@ -113,35 +121,38 @@ export class Protect extends View<Stage> {
     super.close();
   }
 
-  /** The finished copy, while it stands there. */
+  /** The finished copy of the model that is shown, if there is one. */
   get marked(): Model | undefined {
-    return this.#marked;
+    return this.#shelf.latest?.marked;
+  }
+
+  /** Whether something would be lost with the page. */
+  get isAnythingLeft(): boolean {
+    return this.#shelf.isAnyLeft;
   }
 
   /** While another view is in front, nothing is tried: it may need the engine. */
   onShown(isShown: boolean): void {
     if (isShown) {
-      this.#tryLater();
+      this.onOther();
     } else if (!this.#trial?.isDone) {
       this.#dropTrial();
     }
   }
 
-  /** Another key or tag: what was made for the one before must not be handed out. */
-  onOtherMark(): void {
-    if (this.#trial?.isExact) {
+  /** Another model, key or tag: what was tried for the one before is not what is asked for now. */
+  override onOther(): void {
+    if (this.#trial?.isExact && !this.#isAsked(this.#trial)) {
       this.#dropTrial();
     }
+    this.#shelf.refresh();
     this.#tryLater();
   }
 
-  /** Another strength or other carriers: the copy that stands there is not of these. */
+  /** Another strength or other carriers. */
   #onOtherLook(): void {
     this.#dropTrial();
-    if (this.#marked) {
-      this.#marked = undefined;
-      this.outcome.replaceChildren();
-    }
+    this.#shelf.refresh();
     this.#tryLater();
   }
 
@@ -149,7 +160,8 @@ export class Protect extends View<Stage> {
     clearTimeout(this.#timer);
     this.#dropTrial();
     this.#preview.hide();
-    this.#marked = undefined;
+    this.#shelf.fold();
+    this.#looked = undefined;
   }
 
   /** One that has been taken over as the result goes on: only who waits for it ends it. */
@@ -158,6 +170,10 @@ export class Protect extends View<Stage> {
       this.#trial?.abort();
     }
     this.#trial = undefined;
+  }
+
+  #isAsked({ key, asked }: Trial<Marking>): boolean {
+    return key.isInForm() && asked.tag === this.#tag.value;
   }
 
   #tryLater(): void {
@@ -169,19 +185,25 @@ export class Protect extends View<Stage> {
   async #try(): Promise<void> {
     const { model } = this;
     const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
-    const isNeeded = !this.#marked && (!this.#trial || (isExact && !this.#trial.isExact));
+    const isNeeded = !this.#shelf.isAskedHere && (!this.#trial || (isExact && !this.#trial.isExact));
     if (!model || !isNeeded || !this.#isPromising() || this.root.hidden || this.isRunning) {
       return;
     }
     const trial = this.#start(model, isExact);
+    const isWanted = () => trial === this.#trial && !this.isRunning;
     try {
-      const embedding = await trial.embedding;
-      if (trial === this.#trial && !this.isRunning) {
-        this.#preview.show(embedding.report, isExact);
-        await this.stage.showMarked(markedCopy(model, embedding), embedding.report);
+      const marking = await trial.result;
+      if (!isWanted()) {
+        return;
       }
+      if ("already" in marking) {
+        this.#preview.tell(alreadyWords(marking.already, this.#tag.value));
+        return;
+      }
+      this.#preview.show(marking.embedding.report, isExact, this.#strength.value !== "strong");
+      await this.stage.showMarked(copyOf(model, marking.embedding, trial.key, trial.asked).marked, marking.embedding.report);
     } catch (error) {
-      if (trial === this.#trial && !this.isRunning) {
+      if (isWanted()) {
         this.#preview.fail(error);
         this.stage.dropMarked();
       }
@@ -190,17 +212,23 @@ export class Protect extends View<Stage> {
 
   /** Whether some carrier may hold a mark; where none can, that has been said already. */
   #isPromising(): boolean {
-    return this.inspection !== undefined && !this.inspection.capacity.every(isShort);
+    return this.inspection !== undefined && this.inspection.capacity.some(({ addresses, neededAddresses }) => addresses >= neededAddresses);
   }
 
-  #start(model: Model, isExact: boolean): Trial {
+  #start(model: Model, isExact: boolean): Trial<Marking> {
     this.#trial?.abort();
-    const options: EmbedOptions = {
-      strength: this.#strength.value as Preset,
-      carriers: this.#chosenBoxes().map((box) => box.value as Carrier),
-    };
-    const [tag, key] = isExact ? [this.#tag.value, keyMaker()] : [STAND_IN_TAG, strangerKey];
-    return (this.#trial = new Trial(isExact, (progress) => embed(model, tag, key, options, progress), this.#preview.listener));
+    const asked = isExact ? this.#asked() : { ...this.#asked(), tag: STAND_IN_TAG };
+    const key = isExact ? keySource() : STRANGER;
+    const work = (progress: Progress) => (isExact ? this.#mark(model, key, asked, progress) : embed(model, key.make, asked, progress).then((embedding) => ({ embedding })));
+    return (this.#trial = new Trial(isExact, key, asked, work, this.#preview.listener));
+  }
+
+  /** Marks a model, unless it carries a mark of this key and nobody has asked for a second one. */
+  async #mark(model: Model, key: KeySource, asked: Asked, progress: Progress): Promise<Marking> {
+    const known = this.#looked?.model === model && this.#looked.key.isInForm() && key.isInForm() ? this.#looked : undefined;
+    const looked = known ?? { model, key, reading: await markIn(model, key.make, progress), isWanted: false };
+    this.#looked = looked;
+    return looked.reading && !looked.isWanted ? { already: looked.reading } : { embedding: await embed(model, key.make, asked, progress) };
   }
 
   protected async submit(): Promise<void> {
@@ -208,96 +236,105 @@ export class Protect extends View<Stage> {
     const problem = this.#tag.value ? tagProblem(this.#tag.value) : "Give the tag that a check shall read back.";
     setProblem(this.#tag, problem);
     const model = this.ready(keyField ?? (problem ? this.#tag : null));
-    if (!model) {
+    if (!model || this.isRunning) {
       return;
     }
-    await this.run(async (controller) => {
-      clearTimeout(this.#timer);
-      this.#preview.hide();
-      const trial = this.#trial?.isExact ? this.#trial : this.#start(model, true);
-      const embedding = await runTask(this.outcome, controller, (progress) => trial.follow(progress)).catch((error: unknown) => {
-        this.#trial = undefined; // what failed can be asked for again
-        throw error;
-      });
-      if (!embedding) {
-        this.#trial = undefined;
-      } else if (model === this.model) {
-        this.#marked = markedCopy(model, embedding);
-        await this.#present(model, this.#marked, embedding);
+    clearTimeout(this.#timer);
+    this.#preview.hide();
+    await (this.several.length > 1 ? this.#markSeveral(this.several) : this.#markOne(model));
+  }
+
+  async #markOne(model: Model): Promise<void> {
+    const trial = this.#trial?.isExact && this.#isAsked(this.#trial) ? this.#trial : this.#start(model, true);
+    const marking = await this.run(`Marking ${model.name}`, (progress) => trial.follow(progress));
+    if (!marking || "already" in marking) {
+      this.#trial = undefined; // what failed can be asked for again
+    }
+    if (marking && "already" in marking) {
+      this.#askAgain(marking.already);
+    } else if (marking) {
+      const copy = copyOf(model, marking.embedding, trial.key, trial.asked);
+      this.#shelf.add(copy, model, trial.key);
+      this.#shelf.present(false);
+      await this.#look(copy);
+    }
+  }
+
+  #look({ marked, report }: Copy): Promise<void> {
+    return this.stage.showMarked(marked, report, { version: "after" });
+  }
+
+  /** Says what is there already and what a second mark costs, before it begins. */
+  #askAgain(already: DetailedExtraction): void {
+    const again = button("Mark it all the same", () => {
+      if (this.#looked) {
+        this.#looked.isWanted = true;
       }
+      void this.submit();
     });
+    const asking = card("partial", "This model carries your mark already", [alreadyWords(already, this.#tag.value)], actions(again));
+    this.outcome.tell(asking);
+    this.outcome.present(asking);
   }
 
-  async #present(host: Model, marked: Model, { files, report }: Embedding): Promise<void> {
-    present(this.outcome, this.#card(host, marked, Object.entries(files), report));
-    await this.stage.showMarked(marked, report, { version: "after" });
+  async #markSeveral(found: Found[]): Promise<void> {
+    this.#dropTrial();
+    const [key, asked] = [keySource(), this.#asked()];
+    const isDone = await this.run(`Marking ${found.length} models`, async (task) => {
+      for (const [i, { name, open }] of found.entries()) {
+        task.headline(`Marking ${i + 1} of ${found.length}: ${name}`);
+        try {
+          const model = i === 0 ? this.model! : await open();
+          const marking = await this.#mark(model, key, asked, task);
+          if ("already" in marking) {
+            throw new Error(`it carries your mark already, with ${tagWords(marking.already)}; drop it alone to mark it again`);
+          }
+          this.#shelf.add(copyOf(model, marking.embedding, key, asked), model, key);
+        } catch (error) {
+          if (task.signal.aborted) {
+            throw error;
+          }
+          this.#shelf.fail(name, error);
+        }
+      }
+      return true;
+    });
+    this.#shelf.fold();
+    if (isDone) {
+      this.#shelf.present(true);
+    }
   }
 
-  #card(model: Model, marked: Model, files: [name: string, bytes: Uint8Array][], report: EmbedReport): HTMLElement {
-    const { readBack } = report;
-    const holds = readBack.verdict === "found";
-    const lost = holds ? losses(report.forecast) : null;
-    const download = button(`Download ${marked.name}`, () => save(marked.name, marked.bytes, isGltf(marked) ? "model/gltf+json" : "model/gltf-binary"), "primary");
-    const downloads = files.map(([name, bytes]) => button(`Download ${name}`, () => save(name.slice(name.lastIndexOf("/") + 1), bytes as BlobPart), "primary"));
-    return card(
-      readBack.verdict,
-      holds ? "Your mark is in the copy" : "The mark does not hold in this model",
-      [holds ? "It was read back from the finished file. Keep the original to yourself." : (readBack.reason ?? readBack.sentence)],
-      ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost)]),
-      actions(download, ...downloads),
-      ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
-      forecastList(report.forecast),
-      numbers([
-        ...readingRows(readBack),
-        ["Held by", holders(report)],
-      ]),
-      displacement(report),
-      details(
-        "Carriers and files",
-        carrierTable(readBack.carriers),
-        numbers([
-          ["Diagonal", `${significant(report.diagonal)} units`],
-          ["Tag as a number", String(report.number)],
-          ["SHA-256 of the original", h("code", { class: "hash" }, report.hostSha256)],
-          ["SHA-256 of the copy", h("code", { class: "hash" }, report.markedSha256)],
-        ]),
-      ),
-      actions(
-        button("Check this copy", () => this.events.onCheck(marked)),
-        ...(holds ? [button("Try to break it", () => this.events.onBreak())] : []),
-        button("Save report (JSON)", async () => saveJson(renamed(marked.name, "report.json"), await embedReport(model, marked, report))),
-      ),
-    );
+  /** The next strength, tried at once. */
+  #stronger(): void {
+    this.#strength.value = this.#strength.value === "subtle" ? "balanced" : "strong";
+    this.#strength.dispatchEvent(new Event("change"));
+    this.#strength.focus();
   }
 }
 
-function isShort({ addresses, neededAddresses }: Inspection["capacity"][number]): boolean {
-  return addresses < neededAddresses;
-}
+/** A key of nobody's, for what is tried before there is one. */
+const STRANGER: KeySource = { owner: null, make: strangerKey, isInForm: () => true };
 
-/** The copy as a model of its own, beside the files of the original that did not change. */
-function markedCopy(host: Model, { model, files }: Embedding): Model {
-  return {
-    name: renamed(host.name, isGltf(host) ? "marked.gltf" : "marked.glb"),
-    bytes: model as Model["bytes"],
-    buffers: { ...host.buffers, ...files },
-    images: host.images,
-  };
-}
-
-async function embed(model: Model, tag: string, makeKey: KeyMaker, options: EmbedOptions, progress: Progress): Promise<Embedding> {
+async function embed(model: Model, makeKey: KeyMaker, { tag, strength, carriers }: Asked, progress: Progress): Promise<Embedding> {
+  const options: EmbedOptions = { strength, carriers, files: model.buffers };
   const client = await engine;
-  const key = await makeKey(client, progress);
-  progress.stage("read");
-  try {
-    return await client.embed(model.bytes, tag, key, { ...options, files: model.buffers, signal: progress.signal, onProgress: progress.onProgress });
-  } finally {
-    key.fill(0);
-  }
+  return withKey(client, makeKey, progress, (key) => client.embed(model.bytes, tag, key, { ...options, signal: progress.signal, onProgress: progress.onProgress }));
 }
 
-/** The carriers from which the mark was read back; another one may be too weak in this model. */
-function holders({ number, readBack }: EmbedReport): string {
-  const holding = readBack.carriers.filter((carrier) => carrier.number === number);
-  return holding.map(({ name }) => CARRIERS[name].name).join(", ");
+/** The mark of a key that a model carries already; `null` where it carries none. */
+async function markIn(model: Model, makeKey: KeyMaker, progress: Progress): Promise<DetailedExtraction | null> {
+  const client = await engine;
+  const reading = await withKey(client, makeKey, progress, (key) => detect(client, model, key, null, progress));
+  return reading.verdict === "found" ? reading : null;
+}
+
+function tagWords({ tag, number }: DetailedExtraction): string {
+  return tag === null ? `the number ${number}` : `the tag ${tag}`;
+}
+
+/** What marking a marked model means. */
+function alreadyWords(already: DetailedExtraction, tag: string): string {
+  const what = already.tag === tag ? "A second one with the same tag adds nothing that a check would read" : `A second one, with the tag ${tag}, takes the place of that tag`;
+  return `It carries your key’s mark, with ${tagWords(already)}. ${what}, and moves the surface as far again. Better take the original, which has no mark.`;
 }

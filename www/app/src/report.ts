@@ -1,14 +1,18 @@
-/** What can be kept of a result, as JSON. It never holds the key, the name or the passphrase, nor what follows the key where nothing is found. */
-import type { DetailedExtraction, EmbedReport, Extraction } from "meshmark";
+/** What can be kept of a check, as JSON. It never holds the key, the name or the passphrase, nor what follows the key where nothing is found. */
+import type { DetailedExtraction, Extraction } from "meshmark";
+import type { Line } from "./answers";
 import { engine } from "./engine";
-import type { Model } from "./model";
+import { problem } from "./words";
 
-export async function embedReport(host: Model, marked: Model, report: EmbedReport): Promise<object> {
-  return { kind: "embed", ...(await origin()), host: host.name, marked: marked.name, report };
+/** @param sha256 of the suspect's main file */
+export async function checkReport(suspect: string, sha256: string | null, expected: string | null, result: DetailedExtraction): Promise<object> {
+  return { kind: expected === null ? "extract" : "verify", ...(await origin()), suspect, sha256, expected, result: told(result) };
 }
 
-export async function checkReport(suspect: Model, sha256: string | null, expected: string | null, result: DetailedExtraction): Promise<object> {
-  return { kind: expected === null ? "extract" : "verify", ...(await origin()), suspect: suspect.name, sha256, expected, result: told(result) };
+/** Of several suspects, or several keys, whose number has been charged. */
+export async function checksReport(numSuspects: number, numKeys: number, expected: string | null, lines: Line[]): Promise<object> {
+  const line = (line: Line) => ("answer" in line ? { suspect: line.suspect, key: line.key, result: told(line.answer.reading) } : { suspect: line.suspect, error: problem(line.error).text });
+  return { kind: "checks", ...(await origin()), numSuspects, numKeys, expected, answers: lines.map(line) };
 }
 
 /** Reports of checks are passed on. */

@@ -24,5 +24,6 @@ async function dropOtherVersions() {
 
 async function fromCacheFirst(request) {
   // A server's "Vary: Origin" would tell a script's request from the one that filled the cache; the files are the same.
-  return (await caches.match(request, { ignoreSearch: true, ignoreVary: true })) ?? fetch(request);
+  const page = request.url.replace(/\/index\.html(?=[?#]|$)/, "/"); // the page's other name
+  return (await caches.match(page, { ignoreSearch: true, ignoreVary: true })) ?? fetch(request);
 }

@@ -1,8 +1,6 @@
-/** One piece of work at a time in a view: its progress in words, and a way to stop it. */
+/** One piece of work from its beginning to its end: its progress in words, and a way to stop it. */
 import type { OnProgress, Stage } from "meshmark";
-import { MeshmarkError } from "meshmark/client";
 import { announce, button, h } from "./dom";
-import { note, present } from "./outcome";
 import { STAGES } from "./words";
 
 export interface Progress {
@@ -13,55 +11,52 @@ export interface Progress {
 
 /** Work whose steps have words of their own. */
 export interface Task extends Progress {
+  /** What is worked at from now on, where it is several things one after another. */
+  headline(text: string): void;
   /** @param fraction of the whole, from 0 to 1 */
   say(words: string, fraction: number): void;
 }
 
-/**
- * Runs `work` with a progress card in `outcome`, in place of what stood there; its button aborts `controller`.
- *
- * Returns `undefined` where the work was aborted; other errors go to the caller.
- */
-export async function runTask<T>(
-  outcome: HTMLElement,
-  controller: AbortController,
-  work: (task: Task) => Promise<T>,
-): Promise<T | undefined> {
-  const words = h("p");
-  const bar = h("progress", { "aria-label": "Progress of this step" });
-  const cancel = button("Cancel", () => controller.abort());
-  const card = h("section", { class: "card working", "aria-label": "Progress" }, words, bar, cancel);
-  outcome.replaceChildren(card);
-  const stage = (name: Stage | "key") => {
-    if (words.dataset["stage"] !== name) {
-      words.dataset["stage"] = name;
-      words.textContent = `${STAGES[name]} …`;
-      announce(STAGES[name]);
-      bar.removeAttribute("value");
-    }
-  };
-  const onProgress: OnProgress = (name, fraction) => {
-    stage(name);
-    if (name === "test") {
-      words.textContent = `${STAGES.test} … ${Math.round(fraction * 100)} % tried`; // one after another: what may have been done to the model
-    }
-    bar.value = fraction;
-  };
-  const say = (text: string, fraction: number) => {
-    words.textContent = text;
-    bar.value = fraction;
-  };
-  try {
-    return await work({ signal: controller.signal, stage, onProgress, say });
-  } catch (error) {
-    if (error instanceof MeshmarkError && error.code === "aborted") {
-      if (card.isConnected) {
-        present(outcome, note("Cancelled. Nothing was changed."));
+/** A task with its card, whose button ends it. */
+export class Job {
+  readonly card: HTMLElement;
+  readonly task: Task;
+  readonly #controller = new AbortController();
+
+  constructor(headline: string) {
+    const [title, words] = [h("h2", {}, headline), h("p")];
+    const bar = h("progress", { "aria-label": "Progress of this step" });
+    this.card = h("section", { class: "card working", "aria-label": "Progress" }, title, words, bar, button("Cancel", () => this.end()));
+    const stage = (name: Stage | "key") => {
+      if (words.dataset["stage"] !== name) {
+        words.dataset["stage"] = name;
+        words.textContent = `${STAGES[name]} …`;
+        announce(STAGES[name]);
+        bar.removeAttribute("value");
       }
-      return undefined;
-    }
-    throw error;
-  } finally {
-    card.remove();
+    };
+    this.task = {
+      signal: this.#controller.signal,
+      stage,
+      onProgress: (name, fraction) => {
+        stage(name);
+        if (name === "test") {
+          words.textContent = `${STAGES.test} … ${Math.round(fraction * 100)} % tried`; // one after another: what may have been done to the model
+        }
+        bar.value = fraction;
+      },
+      headline: (text) => {
+        title.textContent = text;
+        delete words.dataset["stage"];
+      },
+      say: (text, fraction) => {
+        words.textContent = text;
+        bar.value = fraction;
+      },
+    };
+  }
+
+  end(): void {
+    this.#controller.abort();
   }
 }

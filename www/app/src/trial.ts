@@ -1,40 +1,44 @@
-/** One embedding, begun before anybody asks for it: shown as a preview, and taken over as the result if nothing has changed since. */
-import type { Embedding, Stage } from "meshmark";
+/** Work begun before anybody asks for it: shown as a preview, and taken over as the result if nothing has changed since. */
+import type { Stage } from "meshmark";
+import type { Asked } from "./copy";
+import type { KeySource } from "./key-form";
 import type { Progress } from "./task";
 
 export type Listener = Pick<Progress, "stage" | "onProgress">;
 
-export class Trial {
-  readonly embedding: Promise<Embedding>;
+export class Trial<T> {
+  readonly result: Promise<T>;
   readonly #controller = new AbortController();
   #isDone = false;
   #listener: Listener;
   /** What the listener last heard; `null` for how far a stage is that has no end in sight. */
   #last: [stage: Stage | "key", fraction: number | null] | undefined;
 
-  /** @param isExact whether `work` uses the person's own key and tag, so that its result is the one to hand out */
+  /** @param isExact whether key and tag are the person's own, so that the result is the one to hand out */
   constructor(
     readonly isExact: boolean,
-    work: (progress: Progress) => Promise<Embedding>,
+    readonly key: KeySource,
+    readonly asked: Asked,
+    work: (progress: Progress) => Promise<T>,
     listener: Listener,
   ) {
     this.#listener = listener;
-    this.embedding = work({
+    this.result = work({
       signal: this.#controller.signal,
       stage: (name) => this.#hear(name, null),
       onProgress: (name, fraction) => this.#hear(name, fraction),
     });
-    this.embedding.catch(() => {}).finally(() => (this.#isDone = true)); // whoever waits for it hears of what went wrong
+    this.result.catch(() => {}).finally(() => (this.#isDone = true)); // whoever waits for it hears of what went wrong
   }
 
   /** Goes on before another listener, which hears at once where the work is, and can end it. */
-  follow(progress: Progress): Promise<Embedding> {
+  follow(progress: Progress): Promise<T> {
     this.#listener = progress;
     if (this.#last) {
       this.#hear(...this.#last);
     }
     progress.signal.addEventListener("abort", () => this.abort());
-    return this.embedding;
+    return this.result;
   }
 
   abort(): void {

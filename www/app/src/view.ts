@@ -1,18 +1,28 @@
-/** What all views do: take a model in, show it, say what is wrong with it. */
+/** What all views do: take a model in, show it, say what is wrong with it, work at it. */
 import type { Inspection } from "meshmark";
-import { find } from "./dom";
+import { MeshmarkError } from "meshmark/client";
+import { announce, find } from "./dom";
 import { engine } from "./engine";
-import { modelFrom, type Model, type NamedFile } from "./model";
-import { errorCard, note, present } from "./outcome";
-import type { Showing, StageEvents } from "./stage";
+import { isEvidence, missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
+import { errorCard, note, Outcome } from "./outcome";
+import type { Showing, StageEvents } from "./showing";
+import { Job, type Task } from "./task";
+
+/** Of several models. */
+const MOST_NAMED = 5;
 
 export abstract class View<S extends Showing> {
   readonly form: HTMLFormElement;
   protected readonly stage: S;
-  protected readonly outcome: HTMLElement;
+  protected readonly outcome: Outcome;
   protected model: Model | undefined;
   protected inspection: Inspection | undefined;
-  #running: AbortController | undefined;
+  /** The models that are worked at in one go, where they are several. */
+  protected several: Found[] = [];
+  protected readonly isEvidenceWanted: boolean = false;
+  /** What came with the model: files that it lacks may come later. */
+  #files: NamedFile[] = [];
+  #job: Job | undefined;
 
   constructor(
     readonly root: HTMLElement,
@@ -20,7 +30,7 @@ export abstract class View<S extends Showing> {
     OwnStage: new (view: HTMLElement, events: StageEvents) => S,
   ) {
     this.form = find<HTMLFormElement>("[data-form]", root);
-    this.outcome = find("[data-outcome]", root);
+    this.outcome = new Outcome(find("[data-outcome]", root));
     this.stage = new OwnStage(root, {
       onFiles: (files) => void this.takeFiles(files),
       onDemo: () => void this.takeDemo(),
@@ -32,13 +42,30 @@ export abstract class View<S extends Showing> {
     });
   }
 
-  /** Reads what was dropped or chosen, and takes the model in it. */
+  /** Reads what was dropped or chosen, and takes the model in it, or several. What is no model leaves all as it is. */
   async takeFiles(files: NamedFile[]): Promise<void> {
+    const all = this.#areMissing(files) ? [...files, ...this.#files] : files;
     try {
-      await this.take(await modelFrom(files));
+      const found = modelsIn(all, this.isEvidenceWanted);
+      if (found.length > 1 && !this.#submitButton.dataset["several"]) {
+        throw new Error(`There are ${found.length} models in this; drop one of them, with its own files.`);
+      }
+      const first = await found[0]!.open();
+      this.#files = all;
+      await this.take(first, found.length > 1 ? found : []);
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
+  }
+
+  /** Whether some of the files are what the model that is shown names and lacks. */
+  #areMissing(files: NamedFile[]): boolean {
+    if (!this.model) {
+      return false;
+    }
+    const { buffers, images } = missingFiles(this.model);
+    const names = [...buffers, ...images].map((uri) => uri.slice(uri.lastIndexOf("/") + 1));
+    return files.some(({ file }) => names.includes(file.name));
   }
 
   async takeDemo(): Promise<void> {
@@ -46,29 +73,53 @@ export abstract class View<S extends Showing> {
       const bytes = (await (await engine).demoModel()) as Model["bytes"];
       await this.take({ name: "demo.glb", bytes, buffers: {}, images: {} });
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
   }
 
-  /** Shows a model, ending what was done to the one before. What is wrong with it is said at once, not when it is used. */
-  async take(model: Model): Promise<void> {
-    this.#running?.abort();
-    this.#running = undefined;
+  /**
+   * Shows a model, ending what is being done to the one before. What is wrong with it is said at once, not when it is used.
+   *
+   * @param several all of them, where it is the first of several
+   */
+  async take(model: Model, several: Found[] = []): Promise<void> {
     this.model = model;
+    this.#tellSeveral(several);
     this.inspection = undefined;
-    this.outcome.replaceChildren();
+    const ended = this.#stop() ? [note("What was going on has been ended: another model came.")] : [];
+    this.outcome.tell(...ended);
+    this.stage.open(model.name);
+    this.onOther();
     const [inspection, problem] = await this.#inspect(model);
     if (model !== this.model) {
       return; // another one came meanwhile
     }
     this.inspection = inspection;
     if (problem) {
-      present(this.outcome, problem);
+      this.outcome.tell(...ended, problem);
     }
+    announce(`${model.name} is open.${problem ? ` ${problem.textContent}` : ""}`);
     await this.stage.show(model, inspection ?? null);
   }
 
+  /** Says at the form that it is for several models. */
+  #tellSeveral(several: Found[]): void {
+    this.several = several;
+    const words = this.form.querySelector<HTMLElement>("[data-several-words]");
+    if (words) {
+      const { one, several: label } = this.#submitButton.dataset;
+      const names = several.slice(0, MOST_NAMED).map(({ name }) => name);
+      const more = several.length > MOST_NAMED ? [`${several.length - MOST_NAMED} more`] : [];
+      words.hidden = several.length === 0;
+      words.textContent = `All with the same answers above: ${new Intl.ListFormat("en").format([...names, ...more])}. The first is shown.`;
+      this.#submitButton.textContent = several.length === 0 ? one! : label!.replace("#", String(several.length));
+    }
+  }
+
   async #inspect(model: Model): Promise<[Inspection | undefined, HTMLElement | null]> {
+    if (isEvidence(model)) {
+      return [undefined, null];
+    }
     try {
       const inspection = await (await engine).inspect(model.bytes, { files: model.buffers });
       return [inspection, this.foresee(inspection)];
@@ -82,12 +133,16 @@ export abstract class View<S extends Showing> {
     return null;
   }
 
+  /** Hears that the model, or the key, is another one now: what was finished may be of the one before. */
+  onOther(): void {}
+
   protected close(): void {
-    this.#running?.abort();
-    this.#running = undefined;
+    this.#stop();
     this.model = undefined;
-    this.outcome.replaceChildren();
+    this.#tellSeveral([]);
+    this.outcome.tell();
     this.stage.close();
+    this.onOther();
   }
 
   /** The model that is shown, if any. */
@@ -96,40 +151,78 @@ export abstract class View<S extends Showing> {
   }
 
   /** Whether a person waits for something. */
-  protected get isRunning(): boolean {
-    return this.#running !== undefined;
+  get isRunning(): boolean {
+    return this.#job !== undefined;
   }
 
-  /** Does one thing at a time: while it goes on, the form's button rests, and another model ends it. */
-  protected async run(work: (controller: AbortController) => Promise<void>): Promise<void> {
-    if (this.#running) {
-      return;
+  /** Whether something goes on that would be lost with the page. */
+  get isBusy(): boolean {
+    return this.isRunning;
+  }
+
+  /**
+   * Does one thing at a time, its progress before a person who can cancel it; the form is locked while it goes on, and another model ends it.
+   *
+   * Returns `undefined` where it was cancelled, ended or failed; that has been said.
+   */
+  protected async run<T>(headline: string, work: (task: Task) => Promise<T>): Promise<T | undefined> {
+    if (this.#job) {
+      return undefined;
     }
-    const controller = (this.#running = new AbortController());
-    const button = find('button[type="submit"]', this.form);
-    button.setAttribute("aria-disabled", "true");
+    const job = (this.#job = new Job(headline));
+    this.outcome.tell();
+    this.outcome.work(job.card);
+    this.#lock(true);
+    const isOn = () => this.#job === job;
     try {
-      await work(controller);
+      const result = await work(job.task);
+      return isOn() ? result : undefined;
     } catch (error) {
-      present(this.outcome, errorCard(this.cannot, error));
+      if (isOn()) {
+        const isCancelled = error instanceof MeshmarkError && error.code === "aborted";
+        this.outcome.tell(isCancelled ? note("Cancelled. Nothing was changed.") : errorCard(this.cannot, error));
+      }
+      return undefined;
     } finally {
-      if (this.#running === controller) {
-        this.#running = undefined;
-      }
-      if (!this.#running) {
-        button.removeAttribute("aria-disabled");
-      }
-      if (document.activeElement === document.body) {
-        button.focus({ preventScroll: true }); // the focus was on something that is gone, such as Cancel
+      if (isOn()) {
+        this.#stop();
       }
     }
-    this.outcome.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Ends what goes on, if something does; says whether. */
+  #stop(): boolean {
+    const job = this.#job;
+    if (!job) {
+      return false;
+    }
+    this.#job = undefined;
+    job.end();
+    job.card.remove();
+    this.#lock(false);
+    if (document.activeElement === document.body) {
+      this.#submitButton.focus({ preventScroll: true }); // the focus was on something that is gone, such as Cancel
+    }
+    return true;
+  }
+
+  #lock(isLocked: boolean): void {
+    find<HTMLFieldSetElement>("[data-fields]", this.form).disabled = isLocked;
+    if (isLocked) {
+      this.#submitButton.setAttribute("aria-disabled", "true");
+    } else {
+      this.#submitButton.removeAttribute("aria-disabled");
+    }
+  }
+
+  get #submitButton(): HTMLElement {
+    return find('button[type="submit"]', this.form);
   }
 
   /** The model and the focus a form needs before it can be submitted; `null`, with words, where something is missing. */
   protected ready(wrongField: HTMLElement | null): Model | null {
     if (!this.model) {
-      present(this.outcome, note("First drop a model, or choose one."));
+      this.outcome.tell(note("First drop a model, or choose one."));
     }
     wrongField?.focus();
     return this.model && !wrongField ? this.model : null;

@@ -11,31 +11,42 @@ export const VERDICTS: Record<Verdict, string> = {
 
 /** Each carrier's name, where its symbols live, and what they survive there. */
 export const CARRIERS: Record<Carrier, { name: string; home: string; survives: string }> = {
-  solid: { name: "Shape (SOLID)", home: "shape", survives: "Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
-  ring: { name: "Connectivity (RING)", home: "connectivity", survives: "Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
+  solid: { name: "Shape (SOLID)", home: "shape", survives: "In where the surface is, whatever its triangles. Survives noise, smoothing, quantization, simplification and remeshing, but not cropping." },
+  ring: { name: "Connectivity (RING)", home: "connectivity", survives: "In where each vertex sits among its neighbours. Survives cropping of irregular meshes, reordering and quantization, but not smoothing, simplification or remeshing." },
 };
 
-/** What is tried on a marked model, to follow "It survives". */
-const ATTACKS: Record<string, string> = {
-  none: "no change at all",
-  noise: "noise of 0.1 % of its radius",
-  quantize: "rounding to 11 bits",
-  smooth: "10 steps of smoothing",
-  "simplify-30": "removing 30 % of its triangles",
-  "simplify-70": "removing 70 % of its triangles",
-  crop: "cutting 30 % of it away",
+interface AttackWords {
+  /** To follow "It survives". */
+  name: string;
+  meaning?: string;
+}
+
+/** What is tried on a marked model. */
+const ATTACKS: Record<string, AttackWords> = {
+  none: { name: "no change at all" },
+  noise: { name: "noise of 0.1 %", meaning: "Each vertex is shaken by up to 0.1 % of the model’s radius." },
+  quantize: { name: "rounding to 11 bits", meaning: "Of positions, as when a model is compressed." },
+  smooth: { name: "10 light steps of smoothing", meaning: "In Blender: Smooth Vertices, smoothing 0.1, repeat 10." },
+  "simplify-30": { name: "removing 30 % of its triangles" },
+  "simplify-70": { name: "removing 70 % of its triangles" },
+  crop: { name: "cutting 30 % of it away" },
 };
 
 export const LEVELS: Record<Forecast["level"], string> = { green: "Survives", amber: "Barely", red: "Lost" };
 
-export function attackWords(attack: string): string {
-  return ATTACKS[attack] ?? attack;
+export function attackWords(attack: string): AttackWords {
+  return ATTACKS[attack] ?? { name: attack };
 }
 
 /** What the mark does not survive, in one sentence; `null` where it survives all that was tried. */
 export function losses(forecast: Forecast[]): string | null {
-  const lost = forecast.filter(({ level }) => level === "red").map(({ attack }) => attackWords(attack));
+  const lost = forecast.filter(({ level }) => level === "red").map(({ attack }) => attackWords(attack).name);
   return lost.length === 0 ? null : `It will not survive ${new Intl.ListFormat("en", { type: "disjunction" }).format(lost)}.`;
+}
+
+/** The library's words with the page's: what it calls a payload is a tag here. */
+export function plain(words: string): string {
+  return words.replaceAll("payload", "tag");
 }
 
 /** Where a payload was read: "the shape", "the connectivity", or both; `null` where none was. */
@@ -88,10 +99,10 @@ export function bytes(n: number): string {
   return n < 1e6 ? `${count(Math.ceil(n / 1e3))} kB` : `${(n / 1e6).toFixed(1)} MB`;
 }
 
-/** What went wrong as a sentence without its full stop, and what a program would call it. */
-export function problem(error: unknown): { text: string; code: string; path: string | null } {
+/** What went wrong as a sentence without its full stop, and what a program would call it, if the package said it. */
+export function problem(error: unknown): { text: string; code: string | null; path: string | null } {
   if (error instanceof MeshmarkError) {
     return { text: error.message.replace(/\.$/, ""), code: error.code, path: error.path };
   }
-  return { text: error instanceof Error ? error.message.replace(/\.$/, "") : String(error), code: "page", path: null };
+  return { text: error instanceof Error ? error.message.replace(/\.$/, "") : String(error), code: null, path: null };
 }

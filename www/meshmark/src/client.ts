@@ -34,6 +34,7 @@ export interface Client {
   embed(model: Uint8Array, payload: Payload, key: Uint8Array, options?: EmbedOptions & CallOptions): Promise<Embedding>;
   measure(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Uint8Array>;
   extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions & CallOptions): Promise<Extraction>;
+  extractMany(evidence: Uint8Array, keys: Uint8Array[], options?: ReadOptions & CallOptions): Promise<Extraction[]>;
   verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, options?: ReadOptions & CallOptions): Promise<Verification>;
   detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions & CallOptions): Promise<Extraction>;
   inspect(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Inspection>;
@@ -56,6 +57,7 @@ export async function createClient({ workerUrl, wasmUrl }: ClientOptions = {}): 
     embed: (model, payload, key, options) => remote.call("embed", [model, payload, key], options),
     measure: (model, options) => remote.call("measure", [model], options),
     extract: (evidence, key, options) => remote.call("extract", [evidence, key], options),
+    extractMany: (evidence, keys, options) => remote.call("extractMany", [evidence, keys], options),
     verify: (evidence, key, expected, options) => remote.call("verify", [evidence, key, expected], options),
     detect: (model, key, options) => remote.call("detect", [model, key], options),
     inspect: (model, options) => remote.call("inspect", [model], options),

@@ -95,6 +95,7 @@ export const deriveKey: typeof wasm.deriveKey = guarded(wasm.deriveKey);
 export const embed: typeof wasm.embed = guarded(wasm.embed);
 export const measure: typeof wasm.measure = guarded(wasm.measure);
 export const extract: typeof wasm.extract = guarded(wasm.extract);
+export const extractMany: typeof wasm.extractMany = guarded(wasm.extractMany);
 export const verify: typeof wasm.verify = guarded(wasm.verify);
 export const detect: typeof wasm.detect = guarded(wasm.detect);
 export const inspect: typeof wasm.inspect = guarded(wasm.inspect);

@@ -42,12 +42,19 @@ export class Attempt {
   /**
    * @param title what is done, in words
    * @param hint what it depends on beside that, such as a seed
+   * @param isRepeatable whether title and hint say all, so that the same comes of it each time
    */
   constructor(
     readonly title: string,
     readonly hint: string,
+    readonly isRepeatable: boolean,
     readonly work: Work,
   ) {}
+
+  /** Whether the same comes of it. */
+  isLike({ title, hint, isRepeatable }: Pick<Attempt, "title" | "hint" | "isRepeatable">): boolean {
+    return this.isRepeatable && isRepeatable && this.title === title && this.hint === hint;
+  }
 
   get state(): State {
     return this.#state;

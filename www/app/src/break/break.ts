@@ -1,10 +1,9 @@
 /** Try to break it: a marked model and its key in, and what is left of the mark after whatever is done to it. */
-import { announce, button, find, h } from "../dom";
+import { announce, find, h } from "../dom";
 import { engine } from "../engine";
-import { incompleteKeyField, isKeyComplete, keyMaker } from "../key-form";
-import { modelFrom, type Model, type NamedFile } from "../model";
-import { card, errorCard, present } from "../outcome";
-import { runTask } from "../task";
+import { incompleteKeyField, isKeyComplete, keySource } from "../key-form";
+import { modelsIn, type Model, type NamedFile } from "../model";
+import { card, errorCard } from "../outcome";
 import { View } from "../view";
 import { VERDICTS } from "../words";
 import { Attempt, type Copy, type Work } from "./attempt";
@@ -13,6 +12,7 @@ import { Chain } from "./chain";
 import { SurvivalMap } from "./map";
 import { picker } from "./picker";
 import { ownTool } from "./own";
+import { Now } from "./now";
 import { Queue } from "./queue";
 import { Rows } from "./rows";
 import { BreakStage } from "./stage";
@@ -26,6 +26,7 @@ export class Break extends View<BreakStage> {
   readonly #seed = find<HTMLInputElement>("#seed");
   readonly #chain = new Chain(find("#chain"), (steps) => this.#try(steps));
   readonly #queue = new Queue();
+  readonly #now = new Now(find("#break-now"), () => this.#tried.scrollIntoView({ block: "start" }));
   /** How the result of a tool that is not ours comes in. */
   readonly #own: HTMLElement;
   #bench: Bench | undefined;
@@ -71,11 +72,13 @@ export class Break extends View<BreakStage> {
       return super.takeFiles(files);
     }
     try {
-      const model = await modelFrom(files);
-      this.outcome.replaceChildren();
-      this.#ask(this.#made(model.name, "a file of your own", bench.judge(model)));
+      const found = modelsIn(files);
+      this.outcome.tell();
+      for (const { name, open } of found) {
+        this.#ask(this.#made(name, "a file of your own", false, bench.judge(await open())));
+      }
     } catch (error) {
-      present(this.outcome, errorCard("Cannot open", error));
+      this.outcome.tell(errorCard("Cannot open", error));
     }
   }
 
@@ -95,15 +98,15 @@ export class Break extends View<BreakStage> {
     if (!model) {
       return;
     }
-    const makeKey = keyMaker();
-    await this.run(async (controller) => {
-      const bench = await runTask(this.outcome, controller, async (task) => Bench.open(model, await makeKey(await engine, task), task));
-      if (bench && model === this.model) {
-        this.#open(bench);
-      } else {
-        bench?.close();
-      }
-    });
+    const key = keySource();
+    const bench = await this.run(`Reading ${model.name}`, async (task) => Bench.open(model, await key.make(await engine, task), task));
+    if (bench) {
+      this.#open(bench);
+    }
+  }
+
+  override get isBusy(): boolean {
+    return this.isRunning || this.#queue.isBusy;
   }
 
   #open(bench: Bench): void {
@@ -111,7 +114,9 @@ export class Break extends View<BreakStage> {
     if (reading.verdict !== "found" && reading.verdict !== "partial") {
       bench.close();
       const why = "There is nothing to break: mark the model with this key first, or give the key that it was marked with.";
-      present(this.outcome, card(reading.verdict, VERDICTS[reading.verdict], [why]));
+      const nothing = card(reading.verdict, VERDICTS[reading.verdict], [why]);
+      this.outcome.tell(nothing);
+      this.outcome.present(nothing);
       return;
     }
     const every = choices(bench.catalogue);
@@ -123,11 +128,15 @@ export class Break extends View<BreakStage> {
       onChoose: (attempt) => this.#choose(attempt),
     });
     this.#families.replaceChildren(...picker(every, { onTry: (step) => this.#try([step]), onAdd: (step) => this.#chain.add(step) }));
-    const hint = "By chance: a model made without the key would show as much at most so often. Cost: RMS and largest distance from the marked model, in % of its diagonal, and MSDM, how visible the difference is, 0 to 1.";
+    const hint = "By chance: a model made without the key would show as much at most so often; also for each place where the mark lives. Cost: average and largest distance from the marked model, in % of its size, and how visible the difference is, from 0 to 1 (MSDM).";
     this.#tried.replaceChildren(section("What was tried", hint, rows.root, this.#own));
     this.#survival.replaceChildren(section("Survival map", "Each attack at each level, weakest first. Choose a cell to see its copy; what you try meanwhile comes first.", this.#map.root));
     this.#setOpen(true);
     announce("The mark is there. Try to break it.");
+    const headline = find("h2", this.#tools);
+    headline.tabIndex = -1;
+    headline.focus({ preventScroll: true }); // Begin had it, and is gone
+    find("[data-stage]", this.root).scrollIntoView({ block: "start" });
   }
 
   /** What stands in the map was drawn from the seed before: a map that has been begun stays until it is begun anew. */
@@ -148,6 +157,7 @@ export class Break extends View<BreakStage> {
     this.#bench?.close();
     this.#bench = this.#rows = this.#map = this.#shown = undefined;
     this.#chain.clear();
+    this.#now.hide();
     this.#tried.replaceChildren();
     this.#survival.replaceChildren();
     this.#setOpen(false);
@@ -158,18 +168,20 @@ export class Break extends View<BreakStage> {
     const seed = Math.max(0, Math.floor(this.#seed.valueAsNumber || 0)) % 2 ** 32;
     const work: Work = (telling) => bench.attack(steps.map(({ name }) => name), seed)(telling);
     // A second mark's key is drawn anew each time.
-    const hint = steps.some(({ name }) => name === SECOND_MARK) ? `seed ${seed}, a fresh key` : `seed ${seed}`;
-    return this.#made(stepsWords(steps), hint, work);
+    const isFresh = steps.some(({ name }) => name === SECOND_MARK);
+    return this.#made(stepsWords(steps), isFresh ? `seed ${seed}, a fresh key` : `seed ${seed}`, !isFresh, work);
   }
 
-  #made(title: string, hint: string, work: Work): Attempt {
-    const attempt = new Attempt(title, hint, work);
+  #made(title: string, hint: string, isRepeatable: boolean, work: Work): Attempt {
+    const attempt = new Attempt(title, hint, isRepeatable, work);
     attempt.onChange(() => this.#follow(attempt));
     return attempt;
   }
 
+  /** What was tried before, and would come to the same, is shown again. */
   #try(steps: Step[]): void {
-    this.#ask(this.#attempt(steps));
+    const attempt = this.#attempt(steps);
+    this.#choose(this.#rows?.like(attempt) ?? attempt);
   }
 
   /** A cell of the map: what it holds is shown, what it holds not yet is tried. */
@@ -177,6 +189,7 @@ export class Break extends View<BreakStage> {
     if (attempt.state === "done") {
       this.#rows?.add(attempt);
       this.#look(attempt);
+      announce(`${attempt.title}: ${cameOf(attempt)}`);
     } else {
       this.#ask(attempt);
     }
@@ -211,7 +224,9 @@ export class Break extends View<BreakStage> {
     if (attempt !== this.#shown) {
       return;
     }
-    this.stage.describeCopy(title, state === "running" ? words : capital(cameOf(attempt)), state === "done" ? (finding?.level ?? null) : null);
+    const came = state === "running" ? words : capital(cameOf(attempt));
+    this.stage.describeCopy(title, came, state === "done" ? (finding?.level ?? null) : null);
+    this.#now.tell(title, came, state === "done" ? (finding?.level ?? null) : null);
     if (copy && copy !== this.#broughtCopy) {
       this.#broughtCopy = copy;
       void this.stage.showCopy(copy);

@@ -6,6 +6,10 @@ export class Queue {
   readonly #then: Attempt[] = [];
   #running: Attempt | undefined;
 
+  get isBusy(): boolean {
+    return this.#running !== undefined;
+  }
+
   /** A person waits for it. */
   ask(attempt: Attempt): void {
     this.#add(this.#first, attempt);

@@ -7,7 +7,7 @@ import { oddsOf } from "../outcome";
 import { save } from "../save";
 import { count, percent, problem } from "../words";
 import type { Attempt, Finding } from "./attempt";
-import { cameOf, LEFT, lnWords } from "./words";
+import { cameOf, LEFT } from "./words";
 
 const HEADS = ["What was done", "Mark", "By chance", "Shape", "Connectivity", "Cost", "Triangles", "Copy"];
 
@@ -39,6 +39,12 @@ export class Rows {
       this.#body.prepend(known);
       return;
     }
+    for (const [other, row] of this.#rows) {
+      if (other.isLike(attempt)) {
+        row.remove();
+        this.#rows.delete(other);
+      }
+    }
     const row = h("tr");
     this.#rows.set(attempt, row);
     this.#body.prepend(row);
@@ -69,6 +75,11 @@ export class Rows {
     };
     attempt.onChange(draw);
     draw();
+  }
+
+  /** The attempt in these rows that would come to the same, if there is one. */
+  like(attempt: Attempt): Attempt | undefined {
+    return [...this.#rows.keys()].find((other) => other.isLike(attempt));
   }
 
   /** Marks the row of the copy that is shown. */
@@ -107,9 +118,9 @@ export class Rows {
 
 function numbers({ reading, level, quality }: Finding, first: Finding): HTMLElement[] {
   const two = (above: Node | string, ...below: string[]) => h("td", {}, above, ...below.map((line) => h("span", { class: "hint" }, line)));
-  const probability = (lnP: number | undefined) => (lnP === undefined ? h("td", {}, "–") : two(oddsOf(lnP), lnWords(lnP)));
+  const probability = (lnP: number | undefined) => h("td", {}, lnP === undefined ? "–" : oddsOf(lnP));
   const of = (name: Carrier) => probability(reading.carriers.find((carrier) => carrier.name === name)?.lnP);
-  const cost = ({ rmsRel, hausdorffRel, msdm }: Quality) => two(`RMS ${part(rmsRel)}`, `at most ${part(hausdorffRel)}`, `MSDM ${msdm === null ? "–" : msdm.toFixed(2)}`);
+  const cost = ({ rmsRel, hausdorffRel, msdm }: Quality) => two(`average ${part(rmsRel)}`, `at most ${part(hausdorffRel)}`, `visible ${msdm === null ? "–" : msdm.toFixed(2)}`);
   const share = quality.triangles / first.quality.triangles;
   const cells = [
     h("td", { class: "came", "data-level": level }, h("span", { "aria-hidden": "true" }, `${LEFT[level].sign} `), LEFT[level].words),

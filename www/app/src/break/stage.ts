@@ -1,56 +1,41 @@
 /** The left side: the marked model, and beside it the copy that was last attacked. */
 import type { Inspection } from "meshmark";
-import { find, h, instantiate } from "../dom";
-import { startIntake } from "../intake";
+import { find, h } from "../dom";
 import type { Model } from "../model";
-import type { Showing, StageEvents } from "../stage";
-import { bytes, count } from "../words";
+import { factsOf, Showing, type StageEvents } from "../showing";
 import type { Copy, Level } from "./attempt";
 import type { Pair, PairLook } from "./pair";
 
-export class BreakStage implements Showing {
-  readonly #intake: HTMLElement;
-  readonly #viewing = h("div", { class: "viewing", hidden: "" });
+export class BreakStage extends Showing {
   readonly #copyWords: HTMLElement;
   #pair: Pair | undefined;
   #look: PairLook = { wireframe: false, raking: false };
   /** Counts what is shown on either side: a slow one that has been replaced must not appear. */
   #turn = 0;
-  /** How many models are on their way to a canvas. */
-  #numLoading = 0;
 
   constructor(view: HTMLElement, events: StageEvents) {
-    this.#intake = find("[data-intake]", view);
-    startIntake(this.#intake, events);
-    this.#viewing.append(instantiate("#break-viewer"));
-    find("[data-stage]", view).append(this.#viewing);
-    this.#copyWords = find("[data-copy-words]", this.#viewing);
+    super(view, "#break-viewer", events);
+    this.#copyWords = find("[data-copy-words]", this.viewing);
     for (const name of ["wireframe", "raking"] as const) {
-      this.#tool(name).addEventListener("click", () => {
+      this.tool(name).addEventListener("click", () => {
         this.#look = { ...this.#look, [name]: !this.#look[name] };
-        this.#tool(name).setAttribute("aria-pressed", String(this.#look[name]));
+        this.tool(name).setAttribute("aria-pressed", String(this.#look[name]));
         this.#pair?.look(this.#look);
       });
     }
-    this.#tool("fit").addEventListener("click", () => this.#pair?.fit());
-    this.#tool("reset").addEventListener("click", () => this.#pair?.reset());
-    this.#tool("close").addEventListener("click", () => events.onClose());
+    this.tool("fit").addEventListener("click", () => this.#pair?.fit());
+    this.tool("reset").addEventListener("click", () => this.#pair?.reset());
   }
 
   async show(model: Model, inspection: Inspection | null): Promise<void> {
-    const turn = ++this.#turn;
-    const facts = inspection ? `${count(inspection.vertices)} vertices · ${count(inspection.triangles)} triangles` : bytes(model.bytes.length);
-    find(".facts", this.#viewing).replaceChildren(h("strong", {}, model.name), h("span", {}, facts));
-    this.#intake.hidden = true;
-    this.#viewing.hidden = false;
+    this.facts(model.name, ...factsOf(model, inspection));
     this.describeCopy("Nothing tried yet", "", null);
-    await this.#preview(turn, (pair) => pair.showMarked(model));
+    await this.#bring((pair) => pair.showMarked(model));
   }
 
   /** Shows a copy beside the model, in place of any other. */
   async showCopy(copy: Copy): Promise<void> {
-    const turn = ++this.#turn;
-    await this.#preview(turn, async (pair) => pair.showCopy(await copy(), () => turn === this.#turn));
+    await this.#bring(async (pair, isWanted) => pair.showCopy(await copy(), isWanted));
   }
 
   /** Takes the copy away again. */
@@ -66,40 +51,21 @@ export class BreakStage implements Showing {
     this.#copyWords.replaceChildren(h("strong", {}, title), words);
   }
 
-  close(): void {
+  protected clear(): void {
     this.#turn++;
     this.#pair?.clear();
-    this.#viewing.hidden = true;
-    this.#intake.hidden = false;
-    find("button", this.#intake).focus();
   }
 
-  async #preview(turn: number, show: (pair: Pair) => Promise<void>): Promise<void> {
-    const none = find(".no-preview", this.#viewing);
-    this.#load(1);
-    try {
-      await show(await this.#loadPair());
-      none.hidden = true;
-    } catch (error) {
-      console.warn("No preview:", error);
-      none.hidden = turn !== this.#turn;
-    }
-    this.#load(-1);
-  }
-
-  #load(change: 1 | -1): void {
-    this.#numLoading += change;
-    this.#viewing.setAttribute("aria-busy", String(this.#numLoading > 0));
+  async #bring(show: (pair: Pair, isWanted: () => boolean) => Promise<void>): Promise<void> {
+    const turn = ++this.#turn;
+    const isWanted = () => turn === this.#turn;
+    await this.draw(isWanted, async () => show(await this.#loadPair(), isWanted));
   }
 
   /** three.js comes with the first model. */
   async #loadPair(): Promise<Pair> {
     const { Pair } = await import("./pair");
-    const [marked, copy] = [...this.#viewing.querySelectorAll<HTMLCanvasElement>(".viewer > canvas")];
+    const [marked, copy] = this.canvases();
     return (this.#pair ??= new Pair(marked!, copy!));
-  }
-
-  #tool(name: string): HTMLElement {
-    return find(`[data-tool="${name}"]`, this.#viewing);
   }
 }

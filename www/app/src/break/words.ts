@@ -1,11 +1,11 @@
 /** The attacks' names and what came of them, in words. */
 import type { Attack, Family } from "../../attacks-wasm/attacks.js";
-import { odds, significant } from "../words";
+import { odds } from "../words";
 import type { Attempt, Level } from "./attempt";
 import { SECOND_MARK } from "./bench";
 
 export const FAMILIES: Record<Family, { name: string; hint: string }> = {
-  benchmark: { name: "The benchmark’s", hint: "What watermarks in meshes are compared by (LIRIS, 2010)." },
+  benchmark: { name: "Standard tests", hint: "The attacks of the benchmark that watermarks in meshes are compared by (LIRIS, 2010)." },
   smoothing: { name: "Smoothing", hint: "Other ways to smooth, those of the seed paper among them." },
   retessellation: { name: "Other triangles", hint: "The same surface, meshed anew." },
   wild: { name: "Everyday edits", hint: "What happens to files that nobody means harm." },
@@ -53,11 +53,6 @@ export function capital(text: string): string {
 /** Steps as one sees them: "Crop 30 %, simplify 50 %". */
 export function stepsWords(steps: Step[]): string {
   return capital(steps.map(({ words }) => words).join(", "));
-}
-
-/** ln p as a number, with a true minus. */
-export function lnWords(lnP: number): string {
-  return `ln p ${lnP === 0 ? "0" : significant(lnP).replace("-", "−")}`;
 }
 
 /** Digits as an exponent, in plain text. */

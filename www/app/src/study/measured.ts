@@ -1,9 +1,8 @@
 /** Table I and Fig. 5 of one model, filled in while they are measured. */
 import type { Prepared, Hosts, HostsRow, Parameters, Smoothing } from "../../study-wasm/study.js";
 import { announce, h } from "../dom";
-import { note } from "../outcome";
 import type { Task } from "../task";
-import { percent, problem } from "../words";
+import { percent } from "../words";
 import { errors, hosts } from "./engine";
 import { Figure } from "./figure";
 import { hostsTable } from "./table";
@@ -16,7 +15,6 @@ const KEYS = 3;
 export class Measured {
   readonly #figure: Figure;
   readonly #table = h("div");
-  readonly #figureCard: HTMLElement;
 
   /** Stands in `root` from now on, in place of what was there. */
   constructor(
@@ -30,8 +28,8 @@ export class Measured {
     this.#figure = new Figure({ iterations: ITERATIONS, strengths, strength, smoothedOnce: 1 });
     const by = SMOOTHINGS[smoothing].name;
     const card = (headline: string, hint: string, content: HTMLElement) => h("section", { class: "card", "aria-label": headline }, h("h2", {}, headline), h("p", { class: "hint" }, hint), content);
-    this.#figureCard = card("Fig. 5: wrong bits", `${by}. Points are means over ${KEYS} keys, bars go from the least to the most.`, this.#figure.root);
-    root.replaceChildren(card("Table I: hosts found again", `${by}. Random hosts: mean and standard deviation of ${DRAWS} draws. ×: of that mean.`, this.#table), this.#figureCard);
+    const figureCard = card("Fig. 5: wrong bits", `${by}. Points are means over ${KEYS} keys, bars go from the least to the most.`, this.#figure.root);
+    root.replaceChildren(card("Table I: hosts found again", `${by}. Random hosts: mean and standard deviation of ${DRAWS} draws. ×: of that mean.`, this.#table), figureCard);
     this.#show([]);
   }
 
@@ -59,11 +57,6 @@ export class Measured {
         this.#figure.add(await errors(mesh, { hosts: held, smoothing, iterations, strength, keys: KEYS, signal: task.signal, onProgress }));
       }
     }
-  }
-
-  /** Says why there is no figure, or not all of it. */
-  fail(error: unknown): void {
-    this.#figureCard.append(note(`Not measured: ${problem(error).text}.`));
   }
 
   #show(rows: HostsRow[]): void {

@@ -1,10 +1,9 @@
 /** The left side of the study: the model's mesh as the paper's, its hosts, and what the colours mean. */
 import type { Inspection } from "meshmark";
 import type { Prepared, Fields, Tracing } from "../../study-wasm/study.js";
-import { find, h, instantiate } from "../dom";
-import { startIntake } from "../intake";
+import { find, h } from "../dom";
 import type { Model } from "../model";
-import type { Showing, StageEvents } from "../stage";
+import { Showing, type StageEvents } from "../showing";
 import { drawLegend } from "../viewer/colormap";
 import { count } from "../words";
 import { FATES, PATH_SCALE, type Fate } from "./fate";
@@ -27,54 +26,41 @@ export interface Findings {
 
 const FIRST_LOOK: Look = { version: "before", field: "none", hosts: "stability", paths: true, wireframe: false };
 
-export class StudyStage implements Showing {
+export class StudyStage extends Showing {
   /** Told when something else is to be seen. */
   onLook: () => void = () => {};
   look = FIRST_LOOK;
-  readonly #intake: HTMLElement;
-  readonly #viewing = h("div", { class: "viewing", hidden: "" });
-  readonly #canvas: HTMLCanvasElement;
   readonly #legend: HTMLElement;
   #viewer: StudyViewer | undefined;
   #findings: Findings | undefined;
 
   constructor(view: HTMLElement, events: StageEvents) {
-    this.#intake = find("[data-intake]", view);
-    startIntake(this.#intake, events);
-    this.#viewing.append(instantiate("#study-viewer"));
-    find("[data-stage]", view).append(this.#viewing);
-    this.#canvas = find<HTMLCanvasElement>(".viewer > canvas", this.#viewing);
-    this.#legend = find(".legend", this.#viewing);
-    this.#startTools(events);
+    super(view, "#study-viewer", events);
+    this.#legend = find(".legend", this.viewing);
+    this.#startTools();
   }
 
-  /** The model's name at once; its mesh follows. */
-  async show(model: Model): Promise<void> {
-    this.#say(model.name, []);
-    this.#intake.hidden = true;
-    this.#viewing.hidden = false;
-    this.#findings = undefined;
-    this.#viewer?.clear();
-    this.#legend.hidden = true;
-    this.#change(FIRST_LOOK);
+  /** The model's name; its mesh follows. */
+  async show(model: Model, inspection: Inspection | null): Promise<void> {
+    this.facts(model.name);
+    if (!inspection) {
+      this.rest("There is no picture.");
+    }
   }
 
   /** Says what the model was brought to, and looks at it from the front. */
   async frame(name: string, mesh: Prepared, { vertices, triangles }: Inspection): Promise<void> {
     const now = `${count(mesh.positions.length / 3)} vertices · ${count(mesh.triangles.length / 3)} triangles`;
     const isWhole = mesh.triangles.length / 3 === triangles;
-    this.#say(name, isWhole ? [now] : [now, `simplified to the paper’s size from ${count(vertices)} vertices · ${count(triangles)} triangles`]);
-    const none = find(".no-preview", this.#viewing);
-    try {
-      const { StudyViewer } = await import("./viewer"); // three.js comes with the first model
-      this.#viewer ??= new StudyViewer(this.#canvas);
-      this.#viewer.frame(mesh);
-      none.hidden = true;
-    } catch (error) {
-      console.warn("No preview:", error);
-      none.hidden = false;
-    }
-    this.#canvas.hidden = !none.hidden;
+    this.facts(name, now, ...(isWhole ? [] : [`simplified to the paper’s size from ${count(vertices)} vertices · ${count(triangles)} triangles`]));
+    await this.draw(
+      () => true,
+      async () => {
+        const { StudyViewer } = await import("./viewer"); // three.js comes with the first model
+        this.#viewer ??= new StudyViewer(this.canvases()[0]!);
+        this.#viewer.frame(mesh);
+      },
+    );
   }
 
   update(findings: Findings): void {
@@ -82,15 +68,11 @@ export class StudyStage implements Showing {
     this.#draw();
   }
 
-  close(): void {
+  protected clear(): void {
+    this.#findings = undefined;
     this.#viewer?.clear();
-    this.#viewing.hidden = true;
-    this.#intake.hidden = false;
-    find("button", this.#intake).focus();
-  }
-
-  #say(name: string, facts: string[]): void {
-    find(".facts", this.#viewing).replaceChildren(h("strong", {}, name), ...facts.map((fact) => h("span", {}, fact)));
+    this.#legend.hidden = true;
+    this.#change(FIRST_LOOK);
   }
 
   #draw(): void {
@@ -115,37 +97,32 @@ export class StudyStage implements Showing {
   /** Looks in another way, and presses the buttons that stand for it. */
   #change(change: Partial<Look>): void {
     this.look = { ...this.look, ...change };
-    for (const button of this.#viewing.querySelectorAll<HTMLElement>("[data-version]")) {
+    for (const button of this.viewing.querySelectorAll<HTMLElement>("[data-version]")) {
       button.setAttribute("aria-pressed", String(button.dataset["version"] === this.look.version));
     }
     for (const name of ["paths", "wireframe"] as const) {
-      this.#tool(name).setAttribute("aria-pressed", String(this.look[name]));
+      this.tool(name).setAttribute("aria-pressed", String(this.look[name]));
     }
     for (const name of ["field", "hosts"] as const) {
-      this.#tool<HTMLSelectElement>(name).value = this.look[name];
+      this.tool<HTMLSelectElement>(name).value = this.look[name];
     }
     this.#draw();
     this.onLook();
   }
 
-  #startTools(events: StageEvents): void {
-    for (const button of this.#viewing.querySelectorAll<HTMLElement>("[data-version]")) {
+  #startTools(): void {
+    for (const button of this.viewing.querySelectorAll<HTMLElement>("[data-version]")) {
       button.addEventListener("click", () => this.#change({ version: button.dataset["version"] as Version }));
     }
     for (const name of ["paths", "wireframe"] as const) {
-      this.#tool(name).addEventListener("click", () => this.#change({ [name]: !this.look[name] }));
+      this.tool(name).addEventListener("click", () => this.#change({ [name]: !this.look[name] }));
     }
     for (const name of ["field", "hosts"] as const) {
-      const select = this.#tool<HTMLSelectElement>(name);
+      const select = this.tool<HTMLSelectElement>(name);
       select.addEventListener("change", () => this.#change({ [name]: select.value }));
     }
-    this.#tool("fit").addEventListener("click", () => this.#viewer?.fit());
-    this.#tool("reset").addEventListener("click", () => this.#viewer?.reset());
-    this.#tool("close").addEventListener("click", () => events.onClose());
-  }
-
-  #tool<E extends HTMLElement = HTMLElement>(name: string): E {
-    return find<E>(`[data-tool="${name}"]`, this.#viewing);
+    this.tool("fit").addEventListener("click", () => this.#viewer?.fit());
+    this.tool("reset").addEventListener("click", () => this.#viewer?.reset());
   }
 }
 

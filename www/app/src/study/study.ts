@@ -2,8 +2,7 @@
 import type { Fields, Preparation, Prepared, Ranking, Smoothing, Tracing } from "../../study-wasm/study.js";
 import { announce, find, h, setProblem } from "../dom";
 import type { Model } from "../model";
-import { errorCard, numbers, present } from "../outcome";
-import { runTask } from "../task";
+import { errorCard, numbers } from "../outcome";
 import { View } from "../view";
 import { count } from "../words";
 import * as engine from "./engine";
@@ -112,16 +111,15 @@ export class Study extends View<StudyStage> {
     if (!model || !mesh || !choice) {
       return;
     }
-    await this.run(async (controller) => {
-      const measured = new Measured(this.#measured, mesh, choice.smoothing, choice.numHosts, await engine.parameters());
-      const isDone = await runTask(this.outcome, controller, async (task) => {
-        await measured.run(task);
-        return true;
-      }).catch((error: unknown) => measured.fail(error));
-      if (isDone) {
-        announce("Table I and Fig. 5 are measured.");
-      }
+    const parameters = await engine.parameters();
+    const isDone = await this.run(`Measuring ${model.name}`, async (task) => {
+      const measured = new Measured(this.#measured, mesh, choice.smoothing, choice.numHosts, parameters);
+      await measured.run(task);
+      return true;
     });
+    if (isDone) {
+      announce("Table I and Fig. 5 are measured.");
+    }
   }
 
   #describe(): void {
@@ -215,7 +213,10 @@ export class Study extends View<StudyStage> {
   #fail(turn: number, error: unknown): void {
     if (turn === this.#turn) {
       this.#words.hidden = true;
-      present(this.outcome, errorCard(this.cannot, error));
+      if (!this.#mesh) {
+        this.stage.rest("There is no picture.");
+      }
+      this.outcome.tell(errorCard(this.cannot, error));
     }
   }
 }

@@ -1,7 +1,10 @@
 /** A model for the eye: three.js reads it, every URL in it answered from memory. */
-import { LoadingManager, type Group } from "three";
-import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { LoadingManager, Mesh, MeshStandardMaterial, type Group, type Material } from "three";
+import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { decoded, type Model } from "../model";
+
+/** A grey between light grounds and dark ones. */
+const BARE = 0x8d9299;
 
 /**
  * The model's scene. No URL in a model reaches the network: files that were handed in and data: URIs become blob: URLs,
@@ -20,10 +23,19 @@ export async function loadScene(model: Model): Promise<Group> {
     return local;
   });
   try {
-    const { scene } = await new GLTFLoader(manager).parseAsync(model.bytes.slice().buffer, "");
-    return scene;
+    const gltf = await new GLTFLoader(manager).parseAsync(model.bytes.slice().buffer, "");
+    gltf.scene.traverse((object) => object instanceof Mesh && colorBare(gltf, object.material));
+    return gltf.scene;
   } finally {
     made.forEach((url) => URL.revokeObjectURL(url));
+  }
+}
+
+/** What has no material is white by glTF's rules: on a light ground nothing is seen of it. */
+function colorBare({ parser }: GLTF, material: Material): void {
+  if (parser.associations.get(material)?.materials === undefined && material instanceof MeshStandardMaterial && !material.vertexColors) {
+    material.color.set(BARE);
+    material.metalness = 0;
   }
 }
 

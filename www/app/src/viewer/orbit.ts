@@ -61,7 +61,10 @@ export class Orbit {
     pmrem.dispose();
     this.scene.add(this.#camera.add(this.#light, this.#light.target));
 
+    // One finger scrolls the page past a canvas, and turns the model once a tap has given it the focus: see `touch-action` in its style.
+    canvas.addEventListener("pointerdown", ({ pointerType }) => (this.#controls.enabled = pointerType !== "touch" || document.activeElement === canvas), { capture: true });
     this.#controls = new OrbitControls(this.#camera, canvas);
+    canvas.style.touchAction = "";
     this.#controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.#controls.addEventListener("change", () => {
       this.draw();

@@ -1,0 +1,64 @@
+/** A finished copy in words and figures, and what can be done with it. */
+import type { EmbedReport } from "meshmark";
+import { downloads, reportOf, whose, type Copy } from "./copy";
+import { button, h } from "./dom";
+import { renamed } from "./model";
+import { actions, card, carrierTable, details, displacement, forecastList, numbers, readingRows } from "./outcome";
+import { saveJson } from "./save";
+import { CARRIERS, losses, plain, significant } from "./words";
+
+export interface CopyEvents {
+  /** A file of the copy is wanted. */
+  onSave(name: string): void;
+  onCheck(): void;
+  onDismiss(): void;
+  /** What takes the key and the original; a copy from before a reload is without. */
+  ofThisVisit?: { onSaveKey(): void; onBreak(): void; onStronger(): void };
+}
+
+export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }: CopyEvents): HTMLElement {
+  const { marked, report, files, owner, asked } = copy;
+  const { readBack } = report;
+  const holds = readBack.verdict === "found";
+  const lost = holds ? losses(report.forecast) : null;
+  const stronger = ofThisVisit && asked.strength !== "strong" ? [actions(button(`Mark again, ${asked.strength === "subtle" ? "balanced" : "strong"}`, ofThisVisit.onStronger))] : [];
+  const earlier = ofThisVisit ? [] : [`Made ${new Date(copy.made).toLocaleString()}, and not downloaded since. This browser keeps it until you download or dismiss it.`];
+  return card(
+    readBack.verdict,
+    holds ? "Your mark is in the copy" : "The mark does not hold in this model",
+    [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
+    ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
+    actions(...downloads(copy).map(({ name }) => button(`Download ${name}`, () => onSave(name), "primary"))),
+    ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
+    forecastList(report.forecast),
+    numbers([
+      ...readingRows(readBack),
+      ["Owner", owner ?? "a key file"],
+      ["Read from", holders(report), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."],
+    ]),
+    displacement(report),
+    details(
+      "Carriers and files",
+      carrierTable(readBack.carriers),
+      numbers([
+        ["Diagonal", `${significant(report.diagonal)} units`, "Of the box around the model, in the units of its file."],
+        ["Tag as a number", String(report.number)],
+        ["SHA-256 of the original", h("code", { class: "hash" }, report.hostSha256)],
+        ["SHA-256 of the copy", h("code", { class: "hash" }, report.markedSha256)],
+      ]),
+    ),
+    h("h3", {}, "To keep beside the original"),
+    h("p", { class: "hint" }, "Keep the original to yourself, with the report and the key: together they show later what you marked, when, and how. Whoever has the key file has the key."),
+    actions(
+      button("Save report (JSON)", async () => saveJson(renamed(marked.name, "report.json"), await reportOf(copy))),
+      ...(ofThisVisit ? [button("Save key file", ofThisVisit.onSaveKey)] : []),
+    ),
+    actions(button("Check this copy", onCheck), ...(holds && ofThisVisit ? [button("Try to break it", ofThisVisit.onBreak)] : []), button("Dismiss", onDismiss)),
+  );
+}
+
+/** The carriers from which the mark was read back; another one may be too weak in this model. */
+function holders({ number, readBack }: EmbedReport): string {
+  const holding = readBack.carriers.filter((carrier) => carrier.number === number);
+  return holding.map(({ name }) => CARRIERS[name].name).join(", ");
+}

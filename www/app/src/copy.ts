@@ -1,0 +1,57 @@
+/** A finished copy, and what it was made with, so that it can say so wherever it goes. Never the key. */
+import type { Carrier, EmbedReport, Embedding, Strength } from "meshmark";
+import { engine } from "./engine";
+import type { KeySource } from "./key-form";
+import { copyName, sizeOf, type Model } from "./model";
+
+/** What is random in a forecast is drawn from it: the same copy has the same forecast. */
+const FORECAST_SEED = 1;
+
+export type Preset = Extract<Strength, string>;
+
+/** What a form asks for beside the key. */
+export interface Asked {
+  tag: string;
+  strength: Preset;
+  carriers: Carrier[];
+}
+
+export interface Copy {
+  /** The same for the same bytes under the same name. */
+  id: string;
+  /** When it was finished, as ISO 8601 has it. */
+  made: string;
+  /** Of the original. */
+  host: string;
+  hostBytes: number;
+  marked: Model;
+  /** The buffers that changed, which go with the main file. */
+  files: string[];
+  report: EmbedReport;
+  /** Whose key it was; `null` for a key file. */
+  owner: string | null;
+  asked: Asked;
+}
+
+export function copyOf(host: Model, { model, files, report }: Embedding, key: KeySource, asked: Asked): Copy {
+  const marked: Model = { name: copyName(host, "marked"), bytes: model as Model["bytes"], buffers: { ...host.buffers, ...files }, images: host.images };
+  const made = new Date().toISOString();
+  return { id: `${report.markedSha256} ${marked.name}`, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, asked };
+}
+
+/** What is to be downloaded: the main file first. */
+export function downloads({ marked, files }: Copy): { name: string; bytes: Uint8Array }[] {
+  const others = files.map((uri) => ({ name: uri.slice(uri.lastIndexOf("/") + 1), bytes: marked.buffers[uri]! }));
+  return [{ name: marked.name, bytes: marked.bytes }, ...others];
+}
+
+/** All of it that can be kept beside the original, as JSON. */
+export async function reportOf({ made, host, hostBytes, marked, owner, asked, report }: Copy): Promise<object> {
+  const meshmark = await (await engine).version();
+  return { kind: "embed", meshmark, made, owner, host, hostBytes, marked: marked.name, markedBytes: sizeOf(marked), asked, forecastSeed: FORECAST_SEED, report };
+}
+
+/** Whose the copy is and what a check will read, for a person: "the tag ADA-1 of Ada". */
+export function whose({ owner, asked }: Copy): string {
+  return `the tag ${asked.tag} ${owner === null ? "of a key file" : `of ${owner}`}`;
+}

@@ -113,15 +113,18 @@ export function oddsOf(lnP: number): HTMLElement {
 
 /** What a blind reading says, as rows of `numbers`. */
 export function readingRows(reading: DetailedExtraction): Row[] {
+  const isInPiece = reading.carriers.some(({ piece }) => piece !== null);
+  const piece: Row = ["Found in", "a piece of the model, read alone", "An object of the scene, whatever stands beside it."];
   return [
     ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
+    ...(isInPiece ? [piece] : []),
     ["Chance of this without the key", chance(reading.lnP)],
     ["Agreement", `${Math.round(reading.agreement * 100)} %`, "How well what was read fits that tag: 100 % is perfect, 0 % is chance."],
   ];
 }
 
 /** How far vertices move: against the model's size, which says what is seen, and in its own units. */
-export function displacement({ rmsRel, maxRel, diagonal, movedVertices, vertices }: EmbedReport): HTMLElement {
+export function displacement({ rmsRel, maxRel, diagonal, movedVertices, vertices, worstPartRel, worstTurnDegrees, warnings }: EmbedReport): HTMLElement {
   const both = (rel: number) => h("span", { class: "both" }, h("span", {}, `${percent(rel)} of its size`), h("span", {}, `${significant(rel * diagonal)} units`));
   return h(
     "section",
@@ -131,7 +134,10 @@ export function displacement({ rmsRel, maxRel, diagonal, movedVertices, vertices
       ["On average", both(rmsRel)],
       ["At most", both(maxRel)],
       ["Moved", `${count(movedVertices)} of ${count(vertices)}`],
+      ["Bent part", `at most ${percent(worstPartRel)} of its own size`, "A part is what hangs together: a wheel, a leaf."],
+      ["Turned triangle", `at most ${significant(worstTurnDegrees)}°`],
     ]),
+    ...warnings.map((warning) => h("p", { class: "sentence warning" }, `${warning.charAt(0).toUpperCase()}${warning.slice(1)}.`)),
     h("p", { class: "hint" }, "The size is the diagonal of the box around the model, a unit the one of its file; the average is the root of the mean square."),
   );
 }

@@ -54,9 +54,8 @@ pub struct Leeway<'a> {
 }
 
 impl<'a> Leeway<'a> {
-    /// Looks at a mesh. O(V + F log D), D the most triangles at a vertex.
-    pub fn new(mesh: &'a Mesh, bounds: Bounds) -> Leeway<'a> {
-        let parts = Parts::new(mesh);
+    /// Looks at a mesh and its parts. O(V + F).
+    pub fn new(mesh: &'a Mesh, parts: &Parts, bounds: Bounds) -> Leeway<'a> {
         let mut reaches = vec![f64::INFINITY; mesh.positions.len()];
         for (triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {
             for &vertex in triangle {

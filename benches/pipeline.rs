@@ -7,7 +7,7 @@ use meshmark::internals::carrier::{Carrier, Host, Mark, ring, solid};
 use meshmark::internals::code::{Checked, Codeword, decode};
 use meshmark::internals::document::Document;
 use meshmark::internals::geometry::spectral::{self, InverseFilter};
-use meshmark::internals::geometry::{Bounds, Leeway, Pose, outward, roughness};
+use meshmark::internals::geometry::{Bounds, Leeway, Parts, Pose, outward, roughness};
 use meshmark::internals::mesh::{Admissible, Edges, shapes};
 use meshmark::internals::paper::{Ranking, rank};
 use meshmark::internals::progress::ignore;
@@ -92,7 +92,7 @@ fn stages(criterion: &mut Criterion) {
     let payload = Payload::from_tag("BENCH").expect("a tag");
     let host = Host {
         mesh: &mesh,
-        leeway: &Leeway::new(&mesh, Bounds::STRONG),
+        leeway: &Leeway::new(&mesh, &Parts::new(&mesh), Bounds::STRONG),
         admissible: &Admissible::default(),
         rms_rel: RMS_REL,
         hidden: false,

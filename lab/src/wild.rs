@@ -227,7 +227,7 @@ fn deformation(host: &Opened, marked: &Opened) -> Result<Deformation, String> {
     let said = |error: SceneError| error.code().to_owned();
     let scene = Scene::gather(&host.document()?).map_err(said)?;
     let after = scene.positions_in(&marked.document()?).map_err(said)?;
-    Ok(Deformation::between(&scene.mesh, &after))
+    Ok(Deformation::between(&scene.mesh, &scene.parts(), &after))
 }
 
 /// What is said of a suspect: ln p, if its payload is found.

@@ -19,10 +19,9 @@ pub struct Deformation {
 
 impl Deformation {
     /// Compares a mesh with itself after its V vertices went to other positions.
-    pub fn between(mesh: &Mesh, after: &[DVec3]) -> Deformation {
-        let parts = Parts::new(mesh);
+    pub fn between(mesh: &Mesh, parts: &Parts, after: &[DVec3]) -> Deformation {
         let mut deformation = Deformation {
-            worst_part: worst_part(mesh, &parts, after),
+            worst_part: worst_part(mesh, parts, after),
             ..Deformation::default()
         };
         for (&triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {

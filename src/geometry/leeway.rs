@@ -54,9 +54,8 @@ pub struct Leeway<'a> {
 }
 
 impl<'a> Leeway<'a> {
-    /// Looks at a mesh. O(V + F log D), D the most triangles at a vertex.
-    pub fn new(mesh: &'a Mesh, bounds: Bounds) -> Leeway<'a> {
-        let parts = Parts::new(mesh);
+    /// Looks at a mesh and its parts. O(V + F).
+    pub fn new(mesh: &'a Mesh, parts: &Parts, bounds: Bounds) -> Leeway<'a> {
         let mut reaches = vec![f64::INFINITY; mesh.positions.len()];
         for (triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {
             for &vertex in triangle {
@@ -77,9 +76,13 @@ impl<'a> Leeway<'a> {
         }
     }
 
-    /// The same bounds for another mesh.
-    pub fn of<'b>(&self, mesh: &'b Mesh) -> Leeway<'b> {
-        Leeway::new(mesh, self.bounds)
+    /// The same for some of the vertices, and the mesh that they make.
+    pub fn of<'b>(&self, mesh: &'b Mesh, vertices: &[u32]) -> Leeway<'b> {
+        let reach = |&vertex: &u32| self.reaches[vertex as usize];
+        Leeway {
+            reaches: vertices.iter().map(reach).collect(),
+            ..Leeway::new(mesh, &Parts::new(mesh), self.bounds)
+        }
     }
 
     /// How far each vertex may go from where it is in the mesh, in scene units.

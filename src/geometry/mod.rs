@@ -44,5 +44,5 @@ pub use quadric::{Quadric, collapse_costs};
 pub use quality::Quality;
 pub use registration::registered;
 pub use roughness::roughness;
-pub use seams::seams;
+pub use seams::{Seams, seams};
 pub use surface::{Nearest, Surface};

@@ -14,7 +14,11 @@ pub struct Parts {
 impl Parts {
     /// Finds them. O(V + F log D), D the most triangles at a vertex.
     pub fn new(mesh: &Mesh) -> Parts {
-        let of_triangles = Edges::new(mesh).components();
+        Parts::named(mesh, Edges::new(mesh).components())
+    }
+
+    /// Of a mesh whose triangles are in parts of these numbers.
+    pub fn named(mesh: &Mesh, of_triangles: Vec<u32>) -> Parts {
         let num_parts = of_triangles
             .iter()
             .max()

@@ -17,17 +17,26 @@ const PARTED: [f64; 5] = [1.25e-5, 2.5e-5, 5e-5, 1e-4, 2e-4];
 /// Less than half, so that no third vertex is near two corners of a triangle.
 const SHARE: f64 = 0.45;
 
-/// The vertices that are one with an earlier vertex, each with that one, in rising order. O(V log V + F).
-pub fn seams(mesh: &Mesh) -> Vec<(u32, u32)> {
+/// What is parted in a mesh.
+#[derive(Debug, Default, PartialEq)]
+pub struct Seams {
+    /// The vertices that are one with an earlier vertex, each with that one, in rising order.
+    pub merged: Vec<(u32, u32)>,
+    /// For each triangle its part while the seams are open: a trinket that lies on a table is a thing of its own. Empty without seams.
+    pub parts: Vec<u32>,
+}
+
+/// Finds the seams of a mesh. O(V log V + F log D), D the most triangles at a vertex.
+pub fn seams(mesh: &Mesh) -> Seams {
     let whole = diagonal(&mesh.positions);
     let rounded = (ROUNDED * whole).min(OF_MEAN_SIDE * mesh.mean_edge());
     if rounded <= 0.0 {
-        return Vec::new();
+        return Seams::default();
     }
     let parted = PARTED.map(|share| share * whole);
     let near = crowded(&mesh.positions, parted[parted.len() - 1]);
     if near.is_empty() {
-        return Vec::new();
+        return Seams::default();
     }
     let shortest = shortest_sides(mesh);
     let class = |vertex: u32| {
@@ -36,23 +45,31 @@ pub fn seams(mesh: &Mesh) -> Vec<(u32, u32)> {
     };
     let points: Vec<(u32, u8)> = near.into_iter().map(|v| (v, class(v))).collect();
     let reaches: Vec<f64> = [rounded].into_iter().chain(parted).collect();
-    let (parts, open) = parts_and_open(mesh);
-    merged(&mesh.positions, &points, &reaches, |vertex, other| {
+    let edges = Edges::new(mesh);
+    let parts_of_triangles = edges.components();
+    let (parts, open) = parts_and_open(mesh, &edges, &parts_of_triangles);
+    let merged = merged(&mesh.positions, &points, &reaches, |vertex, other| {
         let (vertex, other) = (vertex as usize, other as usize);
         parts[vertex] != parts[other]
             || open[vertex] && open[other]
             || mesh.positions[vertex].distance(mesh.positions[other]) <= rounded
-    })
+    });
+    Seams {
+        parts: match merged.is_empty() {
+            true => Vec::new(),
+            false => parts_of_triangles,
+        },
+        merged,
+    }
 }
 
 /// For each vertex the first part that it is in, and whether it has an edge with one triangle.
-fn parts_and_open(mesh: &Mesh) -> (Vec<u32>, Vec<bool>) {
-    let edges = Edges::new(mesh);
+fn parts_and_open(mesh: &Mesh, edges: &Edges, parts_of_triangles: &[u32]) -> (Vec<u32>, Vec<bool>) {
     let mut parts = vec![u32::MAX; mesh.positions.len()];
-    for (triangle, part) in mesh.triangles.iter().zip(edges.components()) {
+    for (triangle, part) in mesh.triangles.iter().zip(parts_of_triangles) {
         for &vertex in triangle {
             let known = &mut parts[vertex as usize];
-            *known = part.min(*known);
+            *known = (*known).min(*part);
         }
     }
     let mut open = vec![false; mesh.positions.len()];

@@ -2,7 +2,7 @@
 
 use super::{Count, Placement, Scene, SceneError, inverse, orbits};
 use crate::document::{Document, Node, Primitive, Transform};
-use crate::geometry::seams;
+use crate::geometry::{Seams, seams};
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
@@ -281,7 +281,7 @@ impl Gathering {
             triangles: triangles.collect(),
             positions,
         };
-        let is_parted = close_seams(&mut mesh, &mut self.placements);
+        let parts = close_seams(&mut mesh, &mut self.placements);
         if mesh.triangles.is_empty() {
             return Err(SceneError::NoTriangles);
         }
@@ -289,23 +289,24 @@ impl Gathering {
         let mut scene = Scene {
             mesh,
             admissible,
+            parts,
             placements: self.placements,
         };
-        if is_parted {
+        if scene.parts.is_some() {
             scene.mesh.positions = scene.positions_in(document)?;
         }
         Ok(scene)
     }
 }
 
-/// Makes one vertex of those that a person sees as one; says whether there were any.
-fn close_seams(mesh: &mut Mesh, placements: &mut [Placement]) -> bool {
-    let seams = seams(mesh);
-    if seams.is_empty() {
-        return false;
+/// Makes one vertex of those that a person sees as one; gives back the triangles' parts as they were before, where there were any.
+fn close_seams(mesh: &mut Mesh, placements: &mut [Placement]) -> Option<Vec<u32>> {
+    let Seams { merged, parts } = seams(mesh);
+    if merged.is_empty() {
+        return None;
     }
     let mut leaders: Vec<u32> = (0..mesh.positions.len() as u32).collect();
-    for (vertex, first) in seams {
+    for (vertex, first) in merged {
         if let Some(leader) = leaders.get_mut(vertex as usize) {
             *leader = first;
         }
@@ -322,15 +323,16 @@ fn close_seams(mesh: &mut Mesh, placements: &mut [Placement]) -> bool {
         });
     }
     let name = |vertex: u32| names.get(vertex as usize).copied();
-    let triangles = mesh.triangles.iter();
-    mesh.triangles = triangles
-        .filter_map(|&triangle| renamed(triangle, name))
-        .collect();
+    let triangles = mesh.triangles.iter().zip(parts);
+    let (triangles, parts) = triangles
+        .filter_map(|(&triangle, part)| Some((renamed(triangle, name)?, part)))
+        .unzip();
+    mesh.triangles = triangles;
     mesh.positions = positions;
     for vertex in placements.iter_mut().flat_map(|p| &mut p.vertices) {
         *vertex = vertex.and_then(name);
     }
-    true
+    Some(parts)
 }
 
 /// A triangle by other names, if they are three.

@@ -20,6 +20,7 @@ pub use count::Count;
 pub use plain::to_glb;
 
 use crate::document::DocumentError;
+use crate::geometry::Parts;
 use crate::mesh::{Admissible, Mesh};
 use glam::{DAffine3, DMat3};
 
@@ -96,6 +97,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// Which displacements of its vertices can be written back.
     pub admissible: Admissible,
+    /// The parts of the triangles before seams were closed, where any were.
+    parts: Option<Vec<u32>>,
     placements: Vec<Placement>,
 }
 
@@ -108,6 +111,16 @@ struct Placement {
     to_local: Option<DMat3>,
     /// The vertex of each element; `None` for elements that no triangle uses.
     vertices: Vec<Option<u32>>,
+}
+
+impl Scene {
+    /// What a person sees as one thing each: the components of the mesh, before seams between them were closed.
+    pub fn parts(&self) -> Parts {
+        match &self.parts {
+            Some(parts) => Parts::named(&self.mesh, parts.clone()),
+            None => Parts::new(&self.mesh),
+        }
+    }
 }
 
 impl Placement {

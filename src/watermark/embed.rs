@@ -7,7 +7,7 @@ use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files, Written};
-use crate::geometry::{Bounds, Deformation, Distortion, Leeway, diagonal};
+use crate::geometry::{Bounds, Deformation, Distortion, Leeway, Parts, diagonal};
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::Stage;
@@ -55,11 +55,12 @@ fn embed_in(
     }
     let Marked {
         host,
+        parts,
         marked,
         written,
     } = mark(&mut model, payload, key, options)?;
     let distortion = Distortion::between(&host.positions, &marked.positions);
-    let deformation = Deformation::between(&host, &marked.positions);
+    let deformation = Deformation::between(&host, &parts, &marked.positions);
     let mut marked_files = model.files.clone();
     marked_files.extend(written.files.clone());
     let copy = Model::new(&written.model).with_files(&marked_files);
@@ -120,6 +121,7 @@ fn warnings(deformation: &Deformation) -> Vec<String> {
 /// What is left of an embedding once it is written.
 struct Marked {
     host: Mesh,
+    parts: Parts,
     marked: Mesh,
     written: Written,
 }
@@ -142,7 +144,8 @@ fn mark(
         codeword: &codeword,
     };
     let mut mesh = scene.mesh.clone();
-    let leeway = Leeway::new(&scene.mesh, options.strength.bounds());
+    let parts = scene.parts();
+    let leeway = Leeway::new(&scene.mesh, &parts, options.strength.bounds());
     let chosen: Vec<Carrier> = Carrier::ALL
         .into_iter()
         .filter(|carrier| options.carriers.contains(carrier))
@@ -200,6 +203,7 @@ fn mark(
     model.step(Stage::Write, 1.0)?;
     Ok(Marked {
         host,
+        parts,
         marked,
         written,
     })

@@ -122,12 +122,13 @@ pub fn embed_note<'a>(
     model.step(Stage::Embed, 0.0)?;
     let mut displacement = Cells::new(key, block, STEP).embed(&scene.mesh, &message)?;
     scene.admissible.project(&mut displacement);
-    let leeway = Leeway::new(&scene.mesh, Bounds::STRONG);
+    let parts = scene.parts();
+    let leeway = Leeway::new(&scene.mesh, &parts, Bounds::STRONG);
     leeway.keep(&scene.mesh.positions, &mut displacement, &scene.admissible);
     model.step(Stage::Write, 0.0)?;
     let positions = write(&model, &mut document, &scene, &leeway, displacement)?;
     let marked = scene.mesh.with_positions(positions);
-    let deformation = Deformation::between(&scene.mesh, &marked.positions);
+    let deformation = Deformation::between(&scene.mesh, &parts, &marked.positions);
     let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);
     let written = document.write()?;
     model.step(Stage::Write, 1.0)?;

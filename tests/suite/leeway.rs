@@ -4,7 +4,7 @@ use crate::support::fixtures::{key, payload, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::noise;
 use meshmark::internals::document::Document;
-use meshmark::internals::geometry::{Bounds, Deformation, Leeway, diagonal};
+use meshmark::internals::geometry::{Bounds, Deformation, Leeway, Parts, diagonal};
 use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, EmbedReport, Strength, embed, embed_note};
@@ -110,6 +110,7 @@ fn leeway_holds_for_notes() {
 #[wasm_bindgen_test(unsupported = test)]
 fn leeway_keeps_any_displacement_within_its_bounds() {
     let mesh = shapes::low_poly();
+    let parts = Parts::new(&mesh);
     let far = noise(&mesh, 0.2, 3);
     let asked: Vec<DVec3> = far
         .positions
@@ -125,7 +126,7 @@ fn leeway_keeps_any_displacement_within_its_bounds() {
         fixed: Vec::new(),
     };
     for bounds in [Bounds::HIDDEN, Bounds::STRONG, Bounds::STRONG.times(20.0)] {
-        let leeway = Leeway::new(&mesh, bounds);
+        let leeway = Leeway::new(&mesh, &parts, bounds);
         let mut kept = asked.clone();
         admissible.project(&mut kept);
         let before = kept.clone();
@@ -136,7 +137,7 @@ fn leeway_keeps_any_displacement_within_its_bounds() {
             .zip(&kept)
             .map(|(p, d)| *p + *d)
             .collect();
-        let seen = Deformation::between(&mesh, &after);
+        let seen = Deformation::between(&mesh, &parts, &after);
         assert!(seen.worst_part <= 2.0 * bounds.part, "{seen:?}");
         assert!(seen.worst_turn <= bounds.turn.min(90.0), "{seen:?}");
         assert_eq!(seen.num_turned_over, 0);

@@ -85,7 +85,7 @@ impl<'a> Marked<'a> {
             return Ok(());
         }
         let admissible = self.admissible_in(&vertices);
-        let leeway = self.host.leeway.of(&mesh);
+        let leeway = self.host.leeway.of(&mesh, &vertices);
         let host = Host {
             mesh: &mesh,
             leeway: &leeway,

@@ -2,7 +2,7 @@
 
 use super::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
-use meshmark::internals::geometry::{Bounds, Leeway};
+use meshmark::internals::geometry::{Bounds, Leeway, Parts};
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::{EmbedOptions, Embedding, Error, Key, Payload, embed};
 
@@ -22,7 +22,7 @@ pub fn marked(model: &[u8], key: &Key) -> Result<Embedding, Error> {
 
 /// How far a mesh's vertices may move at the strong strength.
 pub fn strong(mesh: &Mesh) -> Leeway<'_> {
-    Leeway::new(mesh, Bounds::STRONG)
+    Leeway::new(mesh, &Parts::new(mesh), Bounds::STRONG)
 }
 
 pub fn asteroid() -> Mesh {

@@ -6,6 +6,7 @@
 use super::diagonal;
 use super::merge::{crowded, merged};
 use crate::mesh::{Edges, Mesh};
+use std::collections::BTreeSet;
 
 /// What any two vertices are one within, as a fraction of the diagonal ...
 const ROUNDED: f64 = 1e-6;
@@ -48,11 +49,18 @@ pub fn seams(mesh: &Mesh) -> Seams {
     let edges = Edges::new(mesh);
     let parts_of_triangles = edges.components();
     let (parts, open) = parts_and_open(mesh, &edges, &parts_of_triangles);
-    let merged = merged(&mesh.positions, &points, &reaches, |vertex, other| {
-        let (vertex, other) = (vertex as usize, other as usize);
-        parts[vertex] != parts[other]
-            || open[vertex] && open[other]
-            || mesh.positions[vertex].distance(mesh.positions[other]) <= rounded
+    let is_rounded = |vertex: u32, other: u32| {
+        let [a, b] = [vertex, other].map(|v| mesh.positions[v as usize]);
+        a.distance(b) <= rounded
+    };
+    let mut merged = merged(&mesh.positions, &points, &reaches, |vertex, other| {
+        let [a, b] = [vertex as usize, other as usize];
+        parts[a] != parts[b] || open[a] && open[b] || is_rounded(vertex, other)
+    });
+    let sheets = sheets(mesh, &merged, &parts_of_triangles);
+    merged.retain(|&(vertex, first)| {
+        let pair = pair(parts[vertex as usize], parts[first as usize]);
+        is_rounded(vertex, first) || !sheets.contains(&pair)
     });
     Seams {
         parts: match merged.is_empty() {
@@ -61,6 +69,35 @@ pub fn seams(mesh: &Mesh) -> Seams {
         },
         merged,
     }
+}
+
+/// The pairs of parts of which a triangle would lie upon one of the other: two sheets, and no seam.
+fn sheets(mesh: &Mesh, merged: &[(u32, u32)], parts_of_triangles: &[u32]) -> BTreeSet<(u32, u32)> {
+    let name = |vertex: u32| match merged.binary_search_by_key(&vertex, |&(vertex, _)| vertex) {
+        Ok(found) => merged[found].1,
+        Err(_) => vertex,
+    };
+    let mut triangles: Vec<([u32; 3], u32)> = Vec::new();
+    if !merged.is_empty() {
+        triangles.extend(
+            mesh.triangles
+                .iter()
+                .zip(parts_of_triangles)
+                .map(|(t, &part)| {
+                    let mut corners = t.map(name);
+                    corners.sort_unstable();
+                    (corners, part)
+                }),
+        );
+    }
+    triangles.sort_unstable();
+    let upon = triangles.chunk_by(|a, b| a.0 == b.0);
+    upon.flat_map(|upon| upon.windows(2).map(|two| pair(two[0].1, two[1].1)))
+        .collect()
+}
+
+fn pair(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
 }
 
 /// For each vertex the first part that it is in, and whether it has an edge with one triangle.

@@ -117,16 +117,14 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if let Some(num_keys) = arguments.oracle {
         return Ok(oracle::table(&Seed::new(seed), num_keys));
     }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let target = root.join("target");
     if let Some(folder) = &arguments.wild {
-        let tools = arguments
-            .real
-            .as_ref()
-            .map(|folder| real::tools(folder, false));
         return wild::table(
             folder,
             arguments.strength,
             &Seed::new(seed),
-            tools.unwrap_or_default(),
+            real_tools(arguments, &target)?,
         );
     }
     let name = match arguments.false_positives {
@@ -134,7 +132,6 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         Some(_) => "FALSE_POSITIVES.md",
         None => "ROBUSTNESS.md",
     };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let path = arguments
         .output
         .clone()
@@ -149,18 +146,16 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             |text: &str, plot: &str| write_with_plot(&path, text, "false-positives.svg", plot);
         false_positives::table(&models, &Seed::new(seed), tests, &write)?;
     } else {
-        robustness(arguments, seed, &root.join("target"), &path)?;
+        robustness(arguments, seed, &target, &path)?;
     }
     Ok(format!("wrote {}", path.display()))
 }
 
 /// Runs the grid, or the rest of it.
 fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> Result<(), String> {
-    if arguments.real {
-        real::install(&target.join("real"), arguments.blender)?;
-    }
+    let tools = real_tools(arguments, target)?;
     let (models, unread) = models::all(arguments.models.as_deref())?;
-    let scope = scope(arguments, models, target);
+    let scope = scope(arguments, models, tools, target);
     let said = said(arguments);
     let program = program()?;
     let header = |seed| Header {
@@ -193,7 +188,21 @@ fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> R
     )
 }
 
-fn scope(arguments: &Arguments, mut models: Vec<models::Model>, target: &Path) -> Scope {
+/// Other people's programs, where they are asked for; installs them.
+fn real_tools(arguments: &Arguments, target: &Path) -> Result<Vec<real::Tool>, String> {
+    if !arguments.real {
+        return Ok(Vec::new());
+    }
+    real::install(&target.join("real"), arguments.blender)?;
+    Ok(real::tools(&target.join("real"), arguments.blender))
+}
+
+fn scope(
+    arguments: &Arguments,
+    mut models: Vec<models::Model>,
+    tools: Vec<real::Tool>,
+    target: &Path,
+) -> Scope {
     let mut rows = grid::rows();
     if arguments.quick {
         rows.retain(grid::Row::is_quick);
@@ -204,15 +213,9 @@ fn scope(arguments: &Arguments, mut models: Vec<models::Model>, target: &Path) -
         _ => Size::Usual,
     };
     models.retain(|model| model.size <= size);
-    if arguments.real {
-        let tools = real::tools(&target.join("real"), arguments.blender);
-        let scratch = target.join("lab-scratch");
-        rows.extend(
-            tools
-                .into_iter()
-                .map(|tool| grid::Row::tool(tool, scratch.clone())),
-        );
-    }
+    let scratch = target.join("lab-scratch");
+    let of_tool = |tool| grid::Row::tool(tool, scratch.clone());
+    rows.extend(tools.into_iter().map(of_tool));
     Scope {
         models,
         rows,

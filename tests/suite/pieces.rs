@@ -1,11 +1,14 @@
 //! Scenes of several objects: what is one, and that a mark is found in what was taken out of a scene or put into one.
 
-use crate::support::fixtures::{cuboid, key, payload};
-use glam::{DQuat, DVec3};
+use crate::support::fixtures::{cuboid, key, payload, strong};
+use glam::{DMat3, DQuat, DVec3};
 use meshmark::internals::attack::{similarity, simplify};
+use meshmark::internals::carrier::{Host, Mark};
+use meshmark::internals::code::{Checked, Codeword};
 use meshmark::internals::document::Document;
 use meshmark::internals::geometry::Pieces;
-use meshmark::internals::mesh::{Mesh, shapes};
+use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
+use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{Carrier, EmbedOptions, Extraction, Strength, Verdict, detect, embed};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -148,5 +151,45 @@ fn pieces_hold_the_mark_of_their_scene() {
     for object in Pieces::of(&scene).objects {
         let alone = simplify(&scene.part(object), 0.5);
         assert_eq!(found(&similarity(&alone, 7)), Some(None));
+    }
+}
+
+/// An object and its instance, far apart, are marked once and move as one.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_that_are_instances_share_their_mark() {
+    let rock = shapes::asteroid(40, 60);
+    let num = rock.positions.len() as u32;
+    let mesh = Mesh::joined([rock.clone(), moved(&rock, 1.0, DVec3::X * 5.0)]);
+    let members = |vertex| vec![(vertex, DMat3::IDENTITY), (vertex + num, DMat3::IDENTITY)];
+    let orbits = (0..num).map(|vertex| Orbit {
+        members: members(vertex),
+    });
+    let host = Host {
+        mesh: &mesh,
+        leeway: &strong(&mesh),
+        admissible: &Admissible {
+            orbits: orbits.collect(),
+            fixed: vec![],
+        },
+        rms_rel: Strength::STRONG.rms_rel(),
+        hidden: false,
+        on_top: false,
+    };
+    let message = Checked::new(&key(1)).message(payload());
+    let mark = Mark {
+        key: &key(1),
+        codeword: &Codeword::new(message),
+    };
+    let displacement = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap();
+    let (first, second) = displacement.split_at(num as usize);
+    assert!(first == second && first.iter().any(|d| *d != DVec3::ZERO));
+    let displaced = mesh
+        .positions
+        .iter()
+        .zip(&displacement)
+        .map(|(p, d)| *p + *d);
+    let displaced = mesh.with_positions(displaced.collect());
+    for object in Pieces::of(&displaced).objects {
+        assert_eq!(found(&displaced.part(object)), Some(None));
     }
 }

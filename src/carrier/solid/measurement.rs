@@ -1,7 +1,7 @@
 //! What SOLID measures of a suspect without a key, and what a key reads in it: at once, or as it is measured.
 
 use super::lattice::Lattice;
-use super::reading::read;
+use super::reading::{SurfacesOf, read};
 use super::surface::{Origin, Surface};
 use super::surfaces::Surfaces;
 use crate::carrier::{Reading, StoredError, possible};
@@ -28,8 +28,11 @@ impl Measurement {
 
     /// The soft symbols of a key.
     pub fn read(&self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
-        let pieces = self.pieces().map(|piece| piece.iter().map(Cow::Borrowed));
-        read(pieces.collect(), || Lattice::of(key), progress)
+        let mut pieces: Vec<SurfacesOf> = Vec::new();
+        for piece in self.pieces() {
+            pieces.push(Box::new(piece.iter().map(Cow::Borrowed)));
+        }
+        read(pieces, &|| Lattice::of(key), progress)
     }
 
     /// The surfaces of the whole, and of each piece.
@@ -117,8 +120,11 @@ impl Suspect {
 
     /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark.
     pub fn read(self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
-        let pieces = self.0.into_iter().map(|surfaces| surfaces.map(Cow::Owned));
-        read(pieces.collect(), || Lattice::of(key), progress)
+        let mut pieces: Vec<SurfacesOf> = Vec::new();
+        for surfaces in self.0 {
+            pieces.push(Box::new(surfaces.map(Cow::Owned)));
+        }
+        read(pieces, &|| Lattice::of(key), progress)
     }
 }
 

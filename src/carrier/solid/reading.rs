@@ -21,6 +21,9 @@ use std::borrow::Cow;
 /// Kinds of tests.
 const KINDS: usize = 3;
 
+/// The surfaces of one piece, in their order.
+pub type SurfacesOf<'a> = Box<dyn Iterator<Item = Cow<'a, Surface>> + 'a>;
+
 /// Pieces that are scanned, the whole being the first: a scan takes as long for a small one as for a large one.
 const SCANNED: usize = 2;
 
@@ -28,8 +31,8 @@ const SCANNED: usize = 2;
 ///
 /// All are looked at as they are before anything is undone: a marked model is mostly found in that.
 pub fn read<'a>(
-    pieces: Vec<impl Iterator<Item = Cow<'a, Surface>>>,
-    lattice: impl Fn() -> Lattice,
+    pieces: Vec<SurfacesOf<'a>>,
+    lattice: &dyn Fn() -> Lattice,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
     let num_pieces = pieces.len();
@@ -166,7 +169,7 @@ mod tests {
 
     fn reading(surfaces: &[Surface], lattice: impl Fn() -> Lattice) -> Reading {
         let surfaces = surfaces.iter().map(Cow::Borrowed);
-        read(vec![surfaces], lattice, &mut ignore).unwrap()
+        read(vec![Box::new(surfaces)], &lattice, &mut ignore).unwrap()
     }
 
     /// What is followed, what it is charged, and what each symbol weighs.

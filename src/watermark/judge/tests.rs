@@ -80,7 +80,7 @@ fn a_blind_payload_is_charged_its_guess_its_tests_and_its_carriers() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     assert_eq!(found.reason, None);
     near(found.details.agreement, 1.0);
-    let own = -exponent(200, 1.0) + 48.0 * LN_2 + LN_WAYS + 2.0f64.ln();
+    let own = -exponent(200, 1.0) + 48.0 * LN_2 + LN_WAYS + LN_2;
     near(found.details.carriers[1].ln_p, own);
     near(found.details.ln_p, own + LN_2);
     assert_eq!(found.details.carriers[1].owned_addresses, 200);
@@ -94,7 +94,7 @@ fn an_expected_payload_is_charged_three_tests_and_no_guess() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(200, 1.0) + LN_WAYS + 3.0f64.ln() + LN_2,
+        -exponent(200, 1.0) + LN_WAYS + libm::log(3.0) + LN_2,
     );
 }
 
@@ -108,7 +108,7 @@ fn many_keys_are_charged_each() {
     };
     near(
         of(judge(None).one_of(1000)) - of(judge(None)),
-        1000.0f64.ln(),
+        libm::log(1000.0),
     );
 }
 
@@ -213,7 +213,7 @@ fn the_louder_carrier_names_the_payload() {
 
 #[test]
 fn another_payload_is_partly_and_named_where_chance_is_excluded() {
-    let charge = LN_WAYS + 3.0f64.ln() + LN_2 + LN_PAYLOADS;
+    let charge = LN_WAYS + libm::log(3.0) + LN_2 + LN_PAYLOADS;
     let least = |ln_p: f64| ((-ln_p + charge) / 300.0).sqrt();
     let [trace, found] = [LN_P_TRACE, LN_P_FOUND].map(least);
     for (share, names) in [
@@ -265,7 +265,7 @@ fn an_expected_payload_is_fitted_where_none_is_decoded() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(num_parities, share) + LN_WAYS + 3.0f64.ln() + LN_2,
+        -exponent(num_parities, share) + LN_WAYS + libm::log(3.0) + LN_2,
     );
     near(found.details.agreement, share * num_parities as f64 / 300.0);
     // Its neighbours share most parities, and do not have the check bits that fit best.
@@ -314,7 +314,7 @@ fn check_bits_have_to_hold() {
 fn too_few_places_cannot_be_checked() {
     for (expected, tests, guesses) in [(None, 2.0f64, LN_PAYLOADS), (Some(payload(5)), 3.0, 0.0)] {
         let most = |num| Carrier::Ring.most_exponent(num);
-        let needed = -LN_P_FOUND + guesses + tests.ln() + LN_WAYS + LN_CARRIERS;
+        let needed = -LN_P_FOUND + guesses + libm::log(tests) + LN_WAYS + LN_CARRIERS;
         let enough = (0..)
             .find(|&num| most(num) >= needed)
             .expect("there is one");

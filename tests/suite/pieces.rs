@@ -3,6 +3,7 @@
 use crate::support::fixtures::{cuboid, key, payload, strong};
 use glam::{DMat3, DQuat, DVec3};
 use meshmark::internals::attack::{similarity, simplify};
+use meshmark::internals::carrier::solid::{Measurement, Surfaces};
 use meshmark::internals::carrier::{Host, Mark};
 use meshmark::internals::code::{Checked, Codeword};
 use meshmark::internals::document::Document;
@@ -192,4 +193,19 @@ fn pieces_that_are_instances_share_their_mark() {
     for object in Pieces::of(&displaced).objects {
         assert_eq!(found(&displaced.part(object)), Some(None));
     }
+}
+
+/// Objects so far apart that the whole is read at no pitch: evidence says so too, and pieces keep their numbers.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_keep_their_numbers_where_the_whole_is_not_read() {
+    let rock = shapes::asteroid(24, 36);
+    let far = |number: u32| moved(&rock, 1.0, DVec3::X * 60.0 * f64::from(number));
+    let scene = marked(&Mesh::joined((0..3).map(far)));
+    assert!(Surfaces::new(&scene).is_empty(), "the whole is read");
+    assert_eq!(found(&scene), Some(Some(1)));
+    let measured = Measurement::new(&scene);
+    let stored = Measurement::from_bytes(&measured.to_bytes()).unwrap();
+    assert_eq!(stored, measured);
+    let reading = stored.read(&key(1), &mut ignore).unwrap();
+    assert!(reading.hypotheses.iter().all(|way| way.piece == 1));
 }

@@ -23,7 +23,14 @@ pub struct Measurement {
 impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {
-        Suspect::new(mesh).0.into_iter().flatten().collect()
+        let mut all = Vec::new();
+        for surfaces in Suspect::new(mesh).0 {
+            if surfaces.is_empty() {
+                all.push(Surface::unread());
+            }
+            all.extend(surfaces);
+        }
+        Measurement { surfaces: all }
     }
 
     /// The soft symbols of a key.
@@ -101,16 +108,24 @@ impl Suspect {
     }
 
     /// The same, for a mesh that nobody has turned since it was marked (see [`Surfaces::facing`]), as a whole or in pieces. What the
-    /// axes of pieces were is not known.
+    /// axes of pieces were is not known, but only pieces that have their own are marked: there is no need to scan.
     pub fn copied(mesh: &Mesh, unmarked: &Surfaces, in_pieces: bool) -> Suspect {
+        let whole = std::iter::once(Surfaces::new(mesh).facing(unmarked));
         match in_pieces {
-            true => Suspect::new(mesh),
-            false => Suspect::of(std::iter::once(Surfaces::new(mesh).facing(unmarked))),
+            true => Suspect::of(whole.chain(pieces_of(mesh).map(Surfaces::facing_itself))),
+            false => Suspect::of(whole),
         }
     }
 
-    fn of(pieces: impl Iterator<Item = Surfaces>) -> Suspect {
-        Suspect(pieces.filter(|surfaces| !surfaces.is_empty()).collect())
+    /// The whole comes first, whether or not it can be read.
+    fn of(all: impl Iterator<Item = Surfaces>) -> Suspect {
+        let mut number = 0..;
+        let is_kept = |surfaces: &Surfaces| number.next() == Some(0) || !surfaces.is_empty();
+        let mut kept: Vec<Surfaces> = all.filter(is_kept).collect();
+        if kept.iter().all(Surfaces::is_empty) {
+            kept.clear();
+        }
+        Suspect(kept)
     }
 
     /// The same, with surfaces of each piece that `change` makes of them.

@@ -44,7 +44,18 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store.
+    /// A whole suspect that no pitch is read for, where its pieces are read.
+    pub fn unread() -> Surface {
+        Surface {
+            origin: Origin::Suspect,
+            axes: [Axes::Distinct; 2],
+            pitches: Vec::new(),
+            store: Store::new(&[], PITCHES[0]),
+        }
+    }
+
+    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store where
+    /// there is any pitch.
     pub fn read(bytes: &mut &[u8]) -> Result<Surface, StoredError> {
         let origin = Origin::read(take(bytes)?).ok_or(StoredError::Damaged)?;
         let [first, second] = take(bytes)?;
@@ -60,7 +71,11 @@ impl Surface {
         // No more are charged.
         let is_possible = pitches.len() <= MOST_PITCHES && bits >> PITCHES.len() == 0;
         possible(is_possible, "a surface at more pitches than are read")?;
-        let finest = *pitches.first().ok_or(StoredError::Damaged)?;
+        let Some(&finest) = pitches.first() else {
+            let unread = Surface::unread();
+            let is_unread = (origin, axes) == (unread.origin, unread.axes);
+            return is_unread.then_some(unread).ok_or(StoredError::Damaged);
+        };
         Ok(Surface {
             origin,
             axes,
@@ -79,6 +94,8 @@ impl Surface {
         bytes.extend(self.axes.map(|axes| axes as u8));
         let bit = |own: &f64| 1u8 << PITCHES.partition_point(|pitch| pitch < own);
         bytes.push(self.pitches.iter().map(bit).sum());
-        self.store.write(bytes);
+        if !self.pitches.is_empty() {
+            self.store.write(bytes);
+        }
     }
 }

@@ -75,6 +75,12 @@ impl Surfaces {
         self.pose.is_none()
     }
 
+    /// The same, taking the axes of its own frame for those that they were: where that is wrong, its mark is not found.
+    pub fn facing_itself(mut self) -> Surfaces {
+        self.facing = self.pose;
+        self
+    }
+
     fn has_few(&self) -> bool {
         self.mesh.triangles.len() < FEW
     }

@@ -38,7 +38,7 @@ impl Pieces {
     /// Finds them. O(V + F + P^2), P the number of parts, at most 512.
     pub fn of(mesh: &Mesh) -> Pieces {
         let parts = parts(mesh);
-        let objects = objects_of(mesh, &parts, 1.0);
+        let objects = objects_of(&boxes(mesh, &parts), 1.0);
         let is_composed = |object: &&Vec<usize>| object.len() > 1;
         let composed = objects.iter().filter(is_composed).flatten();
         Pieces {
@@ -51,7 +51,8 @@ impl Pieces {
     /// triangles: those of a copy are the same.
     pub fn stable_objects(mesh: &Mesh) -> Vec<Piece> {
         let parts = parts(mesh);
-        let [tight, objects, loose] = [0.5, 1.0, 2.0].map(|slack| objects_of(mesh, &parts, slack));
+        let boxes = boxes(mesh, &parts);
+        let [tight, objects, loose] = [0.5, 1.0, 2.0].map(|slack| objects_of(&boxes, slack));
         let is_stable = |object: &&Vec<usize>| tight.contains(object) && loose.contains(object);
         let stable = objects.iter().filter(is_stable);
         largest(stable.map(|object| joined(object, &parts)), mesh)
@@ -86,13 +87,16 @@ fn parts(mesh: &Mesh) -> Vec<Piece> {
     parts
 }
 
+/// The box about each part; none where it has no area.
+fn boxes(mesh: &Mesh, parts: &[Piece]) -> Vec<Option<Enclosing>> {
+    parts.iter().map(|part| Enclosing::of(mesh, part)).collect()
+}
+
 /// The parts of each object, by their places. `slack` multiplies the limits, and is 1 but where it is asked whether they matter.
-fn objects_of(mesh: &Mesh, parts: &[Piece], slack: f64) -> Vec<Vec<usize>> {
-    let boxes: Vec<Option<Enclosing>> =
-        parts.iter().map(|part| Enclosing::of(mesh, part)).collect();
-    let mut sets = Sets::new(parts.len());
-    for (second, smaller) in (0..).zip(&boxes) {
-        for (first, larger) in (0..second).zip(&boxes) {
+fn objects_of(boxes: &[Option<Enclosing>], slack: f64) -> Vec<Vec<usize>> {
+    let mut sets = Sets::new(boxes.len());
+    for (second, smaller) in (0..).zip(boxes) {
+        for (first, larger) in (0..second).zip(boxes) {
             if let (Some(a), Some(b)) = (larger, smaller)
                 && a.belongs_with(b, slack)
             {
@@ -101,7 +105,7 @@ fn objects_of(mesh: &Mesh, parts: &[Piece], slack: f64) -> Vec<Vec<usize>> {
         }
     }
     let mut objects: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for part in 0..parts.len() {
+    for part in 0..boxes.len() {
         objects
             .entry(sets.find(part as u32))
             .or_default()

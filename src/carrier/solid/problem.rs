@@ -30,7 +30,7 @@ pub struct Problem<'a> {
     /// By vertex: windows and how they answer to its displacement in units of its freedom.
     pushes: Lists<(u32, [f32; 3])>,
     freedom: &'a [f64],
-    /// By window: its inner products with windows, itself included.
+    /// By window: its inner products with windows, itself included. None are listed where vertices are few: [`Problem::inner`].
     gram: Lists<(u32, f64)>,
     diagonal: Vec<f64>,
     /// By window: the part of the moments in it, in an orthonormal basis of these.
@@ -72,7 +72,10 @@ impl<'a> Problem<'a> {
         };
         problem.push(active);
         problem.project();
-        problem.multiply();
+        problem.measure();
+        if num_vertices >= active.len() {
+            problem.multiply();
+        }
         problem
     }
 
@@ -164,7 +167,21 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The windows' inner products.
+    /// Each window's inner product with itself, the moments' part taken out.
+    fn measure(&mut self) {
+        let mut wholes = vec![0.0; self.coupling.len()];
+        for &(row, push) in &self.pushes.items {
+            wholes[row as usize] += push.map(f64::from).iter().map(|p| p * p).sum::<f64>();
+        }
+        let outside =
+            |coupling: &PerMoment<f64>| coupling.iter().map(|part| part * part).sum::<f64>();
+        let wholes = wholes.into_iter().zip(&self.coupling);
+        self.diagonal = wholes
+            .map(|(whole, coupling)| (whole - outside(coupling)).max(1e-9 * whole))
+            .collect();
+    }
+
+    /// Lists the windows' inner products.
     fn multiply(&mut self) {
         let num_windows = self.coupling.len();
         let pushes = &self.pushes;
@@ -195,8 +212,6 @@ impl<'a> Problem<'a> {
                             + push[2] * f64::from(its[2]);
                     }
                 }
-                let window = start as usize + window;
-                let whole = sums[window];
                 for other in touched.drain(..) {
                     let sum = std::mem::take(&mut sums[other as usize]);
                     if sum != 0.0 {
@@ -204,10 +219,31 @@ impl<'a> Problem<'a> {
                     }
                 }
                 self.gram.end_list();
-                let outside: f64 = self.coupling[window].iter().map(|part| part * part).sum();
-                self.diagonal.push((whole - outside).max(1e-9 * whole));
             }
         }
+    }
+
+    /// The windows' inner products times a number for each window. Where vertices are fewer than windows, most windows share one:
+    /// what each vertex hears is then quicker summed than listed.
+    fn inner(&self, l: &[f64]) -> Vec<f64> {
+        if self.positions.len() >= l.len() {
+            let row = |window| {
+                let products = self.gram.get(window).iter();
+                products.map(|&(other, g)| g * l[other as usize]).sum()
+            };
+            return (0..l.len()).map(row).collect();
+        }
+        let mut sums = vec![0.0; l.len()];
+        for vertex in 0..self.positions.len() {
+            let pushes = self.pushes.get(vertex);
+            let heard = pushes.iter().fold(DVec3::ZERO, |heard, &(row, push)| {
+                heard + DVec3::from_array(push.map(f64::from)) * l[row as usize]
+            });
+            for &(row, push) in pushes {
+                sums[row as usize] += DVec3::from_array(push.map(f64::from)).dot(heard);
+            }
+        }
+        sums
     }
 
     pub fn mean_diagonal(&self) -> f64 {
@@ -269,13 +305,7 @@ impl<'a> Problem<'a> {
     fn relax(&self, goals: &[f64], weights: &[f64], mu: f64, multipliers: &mut [f64]) {
         let apply = |l: &[f64]| -> Vec<f64> {
             let parts = self.parts(l);
-            let row = |window: usize| {
-                let inner: f64 = self
-                    .gram
-                    .get(window)
-                    .iter()
-                    .map(|&(other, g)| g * l[other as usize])
-                    .sum();
+            let row = |(window, inner): (usize, f64)| {
                 let outer: f64 = self.coupling[window]
                     .iter()
                     .zip(&parts)
@@ -283,7 +313,7 @@ impl<'a> Problem<'a> {
                     .sum();
                 inner - outer + mu * l[window] / weights[window]
             };
-            (0..l.len()).map(row).collect()
+            self.inner(l).into_iter().enumerate().map(row).collect()
         };
         let precondition = |r: &[f64]| -> Vec<f64> {
             r.iter()

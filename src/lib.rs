@@ -58,10 +58,10 @@ pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
-    CarrierCapacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
-    Extraction, Forecast, Input, Inspection, Level, Model, NoteEmbedding, NoteReading, NoteReport,
-    NoteSize, Strength, Verdict, detect, embed, embed_note, extract, extract_many, file_names,
-    inspect, measure, note_capacity, read_note, verify,
+    Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
+    Extraction, Forecast, Holds, Input, Inspection, Level, Model, NoteEmbedding, NoteReading,
+    NoteReport, NoteSize, Strength, Verdict, capacity, detect, embed, embed_note, extract,
+    extract_many, file_names, inspect, measure, note_capacity, read_note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -39,7 +39,7 @@ impl Embed {
         let host = open(&self.input)?;
         let marked = embed(host.model(&mut clock), payload, &key, &options)?;
         store_all(&self.input, &self.output, &marked.model, &marked.files)?;
-        Report::done(&marked.report, clock)
+        Ok(Report::done(&marked.report, clock)?.with_fragile(marked.report.is_fragile))
     }
 }
 

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 pub const FOUND: u8 = 0;
 pub const NOT_FOUND: u8 = 1;
 pub const CANNOT_CHECK: u8 = 2;
+pub const FRAGILE: u8 = 3;
 
 /// Prints a report. Whoever closes the pipe has read enough.
 pub fn with(report: &Value, code: u8) -> ExitCode {

@@ -1,6 +1,7 @@
 //! The command line: what scripts and servers use. JSON on stdout; progress and errors on stderr.
 //!
-//! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input.
+//! Exit codes: 0 done, or the mark was found; 1 the mark was not found; 2 the model cannot be checked, or bad input; 3 done, but the
+//! mark is fragile.
 
 mod attack;
 mod attacks;
@@ -30,7 +31,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input."
+    after_help = "Exit codes: 0 done or found, 1 not found, 2 cannot check or bad input, 3 done but the mark is fragile."
 )]
 struct Arguments {
     #[command(subcommand)]

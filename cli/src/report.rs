@@ -1,7 +1,7 @@
 //! What a command prints, and how it exits.
 
 use crate::clock::Clock;
-use crate::exit::{self, CANNOT_CHECK, FOUND, NOT_FOUND};
+use crate::exit::{self, CANNOT_CHECK, FOUND, FRAGILE, NOT_FOUND};
 use crate::failure::Failure;
 use meshmark::Verdict;
 use serde::Serialize;
@@ -24,6 +24,12 @@ impl Report {
         Ok(Report { json, code: FOUND })
     }
 
+    /// The same, of a mark that is fragile or is not.
+    pub fn with_fragile(self, is_fragile: bool) -> Report {
+        let code = if is_fragile { FRAGILE } else { self.code };
+        Report { code, ..self }
+    }
+
     /// What was read, with an exit code that says whether anything was found.
     pub fn judged(
         report: &impl Serialize,
@@ -31,7 +37,7 @@ impl Report {
         clock: Clock,
     ) -> Result<Report, Failure> {
         let code = match verdict {
-            Verdict::Found => FOUND,
+            Verdict::Found | Verdict::Present => FOUND,
             Verdict::CannotCheck => CANNOT_CHECK,
             _ => NOT_FOUND,
         };

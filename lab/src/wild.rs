@@ -8,8 +8,8 @@ use meshmark::internals::geometry::Deformation;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    EmbedOptions, Error, Files, Key, Model, Payload, SceneError, Strength, Verdict, detect, embed,
-    file_names,
+    EmbedOptions, EmbedReport, Error, Files, Key, Model, SceneError, Strength, Verdict, detect,
+    embed, file_names,
 };
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -74,7 +74,7 @@ pub fn table(
             let name = path.strip_prefix(folder).unwrap_or(path).display();
             line(path, strength, seed, &columns).map_or_else(
                 |code| format!("\n| {name} | {code} |{}", " |".repeat(7 + columns.len())),
-                |cells| format!("\n| {name} | marked | {} |", cells.join(" | ")),
+                |(class, cells)| format!("\n| {name} | {class} | {} |", cells.join(" | ")),
             )
         })
         .collect();
@@ -176,13 +176,13 @@ impl Opened {
     }
 }
 
-/// The cells behind a file's class; the code of what stopped it, if it cannot be marked.
+/// A file's class, which is what its mark holds, and the cells behind it; the code of what stopped it, if it cannot be marked.
 fn line(
     path: &Path,
     strength: Strength,
     seed: &Seed,
     columns: &[Column],
-) -> Result<Vec<String>, String> {
+) -> Result<(&'static str, Vec<String>), String> {
     let purpose = path.file_name().unwrap_or_default().to_string_lossy();
     let (key, payload) = (seed.key(&purpose, 0), seed.payload(&purpose));
     let host = Opened::new(path)?;
@@ -217,9 +217,15 @@ fn line(
         std::env::temp_dir().join(format!("meshmark-wild-{}-{purpose}", std::process::id()));
     for column in columns {
         let suspect = column.apply(&marked, &after, &scratch);
-        cells.push(suspect.map_or_else(|said| said, |bytes| found(&bytes, &key, payload)));
+        cells.push(suspect.map_or_else(|said| said, |bytes| found(&bytes, &key, report)));
     }
-    Ok(cells)
+    let class = match (report.number, report.is_fragile) {
+        (Some(_), false) => "payload",
+        (None, false) => "presence",
+        (Some(_), true) => "payload, fragile",
+        (None, true) => "presence, fragile",
+    };
+    Ok((class, cells))
 }
 
 /// What was done to a host.
@@ -230,12 +236,17 @@ fn deformation(host: &Opened, marked: &Opened) -> Result<Deformation, String> {
     Ok(Deformation::between(&scene.mesh, &scene.parts(), &after))
 }
 
-/// What is said of a suspect: ln p, if its payload is found.
-fn found(bytes: &[u8], key: &Key, payload: Payload) -> String {
+/// What is said of a suspect: ln p, if what was embedded is found.
+fn found(bytes: &[u8], key: &Key, report: &EmbedReport) -> String {
     match detect(bytes, key, None) {
         Err(error) => error.code().to_owned(),
-        Ok(answer) if answer.verdict != Verdict::Found => "lost".to_owned(),
-        Ok(answer) if answer.number != Some(payload.number()) => "another".to_owned(),
+        Ok(answer) if !matches!(answer.verdict, Verdict::Found | Verdict::Present) => {
+            "lost".to_owned()
+        }
+        Ok(answer) if report.number.is_some() && answer.verdict == Verdict::Present => {
+            format!("present, {:.0}", answer.details().ln_p)
+        }
+        Ok(answer) if answer.number != report.number => "another".to_owned(),
         Ok(answer) => format!("{:.0}", answer.details().ln_p),
     }
 }

@@ -35,7 +35,7 @@ pub enum CarrierError {
     /// The model is too small or too regular.
     #[error(
         "the model is too small or too regular for the {} carrier: its {vertices} vertices give {available} distinct places \
-         for symbols, and a mark of 48 bits needs {needed}",
+         for symbols, and a mark needs {needed}",
         carrier.name()
     )]
     TooFewAddresses {
@@ -50,7 +50,7 @@ pub enum CarrierError {
     },
     /// The model's shape is too poor: hardly any displacement within the limit moves what the carrier measures.
     #[error(
-        "the {} carrier reaches an exponent of {reached:.0} in this model, and a mark of 48 bits needs {needed:.0}",
+        "the {} carrier reaches an exponent of {reached:.0} in this model, and a mark needs {needed:.0}",
         carrier.name()
     )]
     TooWeak {
@@ -59,6 +59,19 @@ pub enum CarrierError {
         /// The exponent that was reached, in nats.
         reached: f64,
         /// The exponent that a mark needs, in nats.
+        needed: f64,
+    },
+    /// The model can hold a mark without a payload, and none with one.
+    #[error(
+        "the {} carrier reaches an exponent of {reached:.0} in this model, and a mark of 48 bits needs {needed:.0}",
+        carrier.name()
+    )]
+    NoPayload {
+        /// The carrier that comes nearest.
+        carrier: Carrier,
+        /// The exponent that was reached, in nats.
+        reached: f64,
+        /// The exponent that a payload needs, in nats.
         needed: f64,
     },
     /// Too few vertices for a code of fixed length.
@@ -75,11 +88,28 @@ pub enum CarrierError {
 }
 
 impl CarrierError {
+    /// How much of what is needed was reached.
+    pub(crate) fn share(&self) -> f64 {
+        match *self {
+            CarrierError::TooFewAddresses {
+                needed, available, ..
+            } => available as f64 / needed as f64,
+            CarrierError::TooWeak {
+                reached, needed, ..
+            }
+            | CarrierError::NoPayload {
+                reached, needed, ..
+            } => reached / needed,
+            CarrierError::TooFewHosts { .. } | CarrierError::Cancelled(_) => 0.0,
+        }
+    }
+
     /// The stable code of this error.
     pub fn code(&self) -> &'static str {
         match self {
             CarrierError::TooFewAddresses { .. } => "carrier.too-few-addresses",
             CarrierError::TooWeak { .. } => "carrier.too-weak",
+            CarrierError::NoPayload { .. } => "carrier.no-payload",
             CarrierError::TooFewHosts { .. } => "carrier.too-few-hosts",
             CarrierError::Cancelled(_) => "aborted",
         }

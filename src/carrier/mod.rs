@@ -59,14 +59,14 @@ impl Carrier {
         Self::ALL.into_iter().find(|carrier| carrier.name() == name)
     }
 
-    /// The displacement of all V vertices that gives the host the mark.
+    /// The displacement of all V vertices that gives the host the mark, whatever it then holds.
     #[doc(hidden)]
     pub fn embed(
         self,
         host: &Host,
         mark: &Mark,
         progress: &mut dyn Progress,
-    ) -> Result<Vec<DVec3>, CarrierError> {
+    ) -> Result<Embedded, CarrierError> {
         match self {
             Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
@@ -94,6 +94,19 @@ impl Carrier {
         }
     }
 
+    /// The same of a mesh as it is, in its own frame.
+    pub(crate) fn read_at_once(
+        self,
+        mesh: &Mesh,
+        key: &Key,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        match self {
+            Carrier::Solid => solid::Suspect::as_it_is(mesh).read(key, progress),
+            Carrier::Ring => self.read(mesh, key, progress),
+        }
+    }
+
     /// The same of a copy of a host that is at hand, with less patience: for nobody has turned it, and whether it was smoothed is known.
     pub(crate) fn read_copy(
         self,
@@ -116,20 +129,9 @@ impl Carrier {
         }
     }
 
-    /// Distinct addresses that a mesh offers to an embedder.
-    pub(crate) fn num_addresses(self, mesh: &Mesh) -> usize {
-        match self {
-            Carrier::Solid => solid::num_windows(mesh),
-            Carrier::Ring => ring::num_addresses(mesh),
-        }
-    }
-
-    /// Distinct addresses that a mark of 48 bits needs.
-    pub(crate) fn needed_addresses(self) -> usize {
-        match self {
-            Carrier::Solid => solid::NEEDED_WINDOWS,
-            Carrier::Ring => ring::NEEDED_ADDRESSES,
-        }
+    /// Whether a shape has axes of its own, by which a mark in it is found at once.
+    pub(crate) fn has_axes(mesh: &Mesh) -> bool {
+        solid::has_axes(mesh)
     }
 
     /// The exponent that is to be hoped for where so many addresses can be read, whichever are a key's: a verdict must not say that.
@@ -227,6 +229,63 @@ pub struct Host<'a> {
     pub hidden: bool,
     /// Whether another carrier's mark is in the mesh already.
     pub on_top: bool,
+}
+
+/// A mark in a host.
+#[derive(Debug)]
+pub struct Embedded {
+    /// The displacement of all V vertices.
+    pub displacement: Vec<DVec3>,
+    /// Which carrier holds it.
+    pub carrier: Carrier,
+    /// The exponent of the bound: of SOLID's, what is left when a web pipeline has rounded the positions.
+    pub exponent: f64,
+    /// What that has to be.
+    pub needs: Needs,
+}
+
+/// Exponents that a mark needs, in nats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Needs {
+    /// To hold a payload, and to stand what else happens to models.
+    pub sturdy: f64,
+    /// To hold a payload at all.
+    pub payload: f64,
+    /// To say whose a model is.
+    pub presence: f64,
+}
+
+impl Embedded {
+    /// The same, if it is enough to say whose a model is.
+    fn if_present(self) -> Result<Embedded, CarrierError> {
+        if self.exponent >= self.needs.presence {
+            return Ok(self);
+        }
+        Err(CarrierError::TooWeak {
+            carrier: self.carrier,
+            reached: self.exponent,
+            needed: self.needs.presence,
+        })
+    }
+
+    /// How much of what a payload needs it reaches.
+    pub fn share(&self) -> f64 {
+        self.exponent / self.needs.payload
+    }
+
+    /// That it cannot hold a payload.
+    pub fn without_payload(&self) -> CarrierError {
+        CarrierError::NoPayload {
+            carrier: self.carrier,
+            reached: self.exponent,
+            needed: self.needs.payload,
+        }
+    }
+
+    /// Whether it holds a payload, and stands what else happens to models.
+    pub fn is_sturdy(&self) -> bool {
+        self.exponent >= self.needs.sturdy
+    }
 }
 
 /// What is to be embedded.

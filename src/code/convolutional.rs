@@ -19,9 +19,14 @@ const STATES: usize = 1 << MEMORY;
 /// The first and the last tap are always set: what the bits between them say is as much as there is to know of a register.
 const INNER: usize = STATES / 2;
 
-/// A message ready to give the sign of any symbol.
+/// What symbols say, ready to give the sign of any.
 #[derive(Clone)]
-pub struct Codeword([u16; STEPS]);
+pub enum Codeword {
+    /// A message, by the registers at each step.
+    Message([u16; STEPS]),
+    /// No message but that a mark is there: every parity says -1, as no message has it.
+    Presence,
+}
 
 impl Codeword {
     /// Encodes the lowest 60 bits of a message, the highest of them first.
@@ -37,15 +42,16 @@ impl Codeword {
             *register = (bit as u16) << MEMORY | state;
             state = *register >> 1;
         }
-        Codeword(registers)
+        Codeword::Message(registers)
     }
 
     /// +1 or -1.
     pub fn sign(&self, symbol: Symbol) -> f64 {
-        match symbol {
-            Symbol::Pilot => 1.0,
-            Symbol::Parity { step, taps } => {
-                if (self.0[usize::from(step)] & taps).count_ones() & 1 == 0 {
+        match (self, symbol) {
+            (_, Symbol::Pilot) => 1.0,
+            (Codeword::Presence, Symbol::Parity { .. }) => -1.0,
+            (Codeword::Message(registers), Symbol::Parity { step, taps }) => {
+                if (registers[usize::from(step)] & taps).count_ones() & 1 == 0 {
                     1.0
                 } else {
                     -1.0

@@ -9,8 +9,6 @@ pub struct Sample {
     pub weights: [f64; 3],
     /// The centroid, in scene units.
     pub point: DVec3,
-    /// The part's area times the triangle's normal.
-    pub area: DVec3,
 }
 
 /// Splits are no deeper than this: 4096 parts.
@@ -66,16 +64,17 @@ impl Quadrature {
             .unwrap_or(self.deepest)
     }
 
-    /// The samples of a triangle: one for each part. Moments of the first order are exact in every part.
-    pub fn samples(&self, [a, b, c]: [DVec3; 3]) -> impl Iterator<Item = Sample> {
+    /// The samples of a triangle, one for each part, after the area that each part has, times the triangle's normal. Moments of the
+    /// first order are exact in every part.
+    pub fn samples(&self, [a, b, c]: [DVec3; 3]) -> (DVec3, impl Iterator<Item = Sample>) {
         let depth = self.depth([a, b, c]);
         let weights = &self.centroids[depth as usize];
         let area = (b - a).cross(c - a) * (0.5 / weights.len() as f64);
-        weights.iter().map(move |&weights| Sample {
+        let samples = weights.iter().map(move |&weights| Sample {
             weights,
             point: a * weights[0] + b * weights[1] + c * weights[2],
-            area,
-        })
+        });
+        (area, samples)
     }
 }
 

@@ -31,6 +31,13 @@ impl Mesh {
         }
     }
 
+    /// Moves every vertex.
+    pub fn displace(&mut self, displacement: &[DVec3]) {
+        for (position, d) in self.positions.iter_mut().zip(displacement) {
+            *position += *d;
+        }
+    }
+
     /// Several meshes as one, not welded.
     pub fn joined(parts: impl IntoIterator<Item = Mesh>) -> Mesh {
         let mut whole = Mesh::default();

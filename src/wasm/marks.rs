@@ -139,6 +139,17 @@ pub fn inspect(model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
     encoded(&watermark::inspect(model).map_err(thrown)?)
 }
 
+/// Tries what a model can hold.
+#[wasm_bindgen(skip_typescript)]
+pub fn capacity(model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["files", "onProgress"])?;
+    let (files, mut progress) = (options.files("files")?, options.progress("onProgress")?);
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut progress);
+    encoded(&watermark::capacity(model).map_err(thrown)?)
+}
+
 /// A generated model.
 #[wasm_bindgen(js_name = demoModel, skip_typescript)]
 pub fn demo_model() -> Vec<u8> {

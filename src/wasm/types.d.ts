@@ -39,11 +39,13 @@ export interface EmbedOptions extends MeasureOptions {
 
 /**
  * `found`: the payload was read and the chance of that without the key is at most 1e-9.
+ * `present`: a mark of this key is there, and the chance of that without the key is at most 1e-9. It holds no payload, or none that can
+ * be read.
  * `partial`: something of this key is there, but not enough to name it found; `reason` says what is missing.
  * `none`: no evidence of this key. This does not prove that the model is not yours.
  * `cannot-check`: the model has too little geometry to answer; `reason` says what is missing.
  */
-export type Verdict = "found" | "partial" | "none" | "cannot-check";
+export type Verdict = "found" | "present" | "partial" | "none" | "cannot-check";
 
 /** What one carrier says. */
 export interface CarrierReading {
@@ -93,7 +95,7 @@ export interface Details {
   carriers: CarrierReading[];
 }
 
-/** A blind reading; `Details` are there where the verdict is `found`, and where they were asked for. */
+/** A blind reading; `Details` are there where the verdict is `found` or `present`, and where they were asked for. */
 export interface Extraction extends Partial<Details> {
   verdict: Verdict;
   input: Input;
@@ -114,7 +116,7 @@ export type Verification = Extraction;
 
 /** What is likely to leave the mark readable: tried on the marked model itself. */
 export interface Forecast {
-  /** "none", "noise", "quantize", "smooth", "simplify-30", "simplify-70" or "crop". */
+  /** "none", "web", "noise", "quantize", "smooth", "simplify-30", "simplify-70" or "crop". */
   attack: string;
   /** green: found with a wide margin; amber: found, barely; red: not found. */
   level: "green" | "amber" | "red";
@@ -124,9 +126,12 @@ export interface Forecast {
 
 /** What an embedding did, and what was read back from its own output. */
 export interface EmbedReport {
-  /** `null` for the one number, 2^48 - 1, that has no tag. */
+  /**
+   * `null` for the one number, 2^48 - 1, that has no tag. Both are `null` for a mark without a payload, which a model gets that is too
+   * small to hold one: it says whose the model is, and no more.
+   */
   tag: string | null;
-  number: number;
+  number: number | null;
   /** Welded vertices in the scene, and how many of them moved. */
   vertices: number;
   movedVertices: number;
@@ -142,7 +147,9 @@ export interface EmbedReport {
    */
   worstPartRel: number;
   worstTurnDegrees: number;
-  /** What may be seen, in sentences: none, but for strengths that are given as a number. */
+  /** Whether rounding positions as web pipelines do takes the mark: the forecast "web" is red. */
+  isFragile: boolean;
+  /** What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen. */
   warnings: string[];
   strength: number;
   /** The output as `extract` reads it. */
@@ -178,9 +185,17 @@ export interface Inspection {
   primitives: number;
   nodes: number;
   extensionsUsed: string[];
-  /** What each carrier could hold. */
-  capacity: { name: Carrier; addresses: number; neededAddresses: number }[];
   sha256: string;
+}
+
+/** What a model can hold. */
+export interface Capacity {
+  /** What a mark in it can say: whose it is and a payload, whose it is, or nothing. */
+  holds: "payload" | "presence" | "nothing";
+  /** The preset that it takes: `strong` where that holds more than `balanced`; `null` where it holds nothing. */
+  strength: "balanced" | "strong" | null;
+  /** Why it holds no more, in words; `null` where it holds a payload. */
+  reason: string | null;
 }
 
 /** What is thrown: a stable `code` such as `document.truncated`, words for people, and for documents a JSON pointer. */
@@ -220,8 +235,14 @@ export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload,
  */
 export function detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions): Extraction;
 
-/** Describes a model and what it could hold, without a key. */
+/** Describes a model, without a key. */
 export function inspect(model: Uint8Array, options?: InspectOptions): Inspection;
+
+/**
+ * Tries what a model can hold, with a key that is nobody's: at the balanced strength, then at the strong one. Another key may fare a little
+ * better or worse. Takes as long as `embed` without its forecast, and twice as long where balanced is not enough.
+ */
+export function capacity(model: Uint8Array, options?: MeasureOptions): Capacity;
 
 /** A generated model to try things on: a .glb with normals and one material. */
 export function demoModel(): Uint8Array;

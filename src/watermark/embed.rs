@@ -1,18 +1,14 @@
-//! Embedding: read, displace, write, and read the result back as any detector would.
+//! Embedding: a marked model, and the report of it.
 
-use super::forecast::forecast;
-use super::{EmbedOptions, EmbedReport, Error, Model, Verdict, detect};
+use super::error::Advice;
+use super::forecast::{forecast, is_fragile};
+use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold, is_of_the_model};
+use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, CarrierError, Host, Mark};
-use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
-use crate::document::{Document, Files, Written};
-use crate::geometry::{Bounds, Deformation, Distortion, Leeway, Parts, diagonal};
+use crate::document::Files;
+use crate::geometry::{Bounds, Deformation, Distortion, diagonal};
 use crate::key::Key;
-use crate::mesh::{Admissible, Mesh};
-use crate::progress::Stage;
-use crate::scene::Scene;
-use glam::DVec3;
 
 /// A marked model.
 #[derive(Clone, Debug)]
@@ -53,31 +49,29 @@ fn embed_in(
     if options.carriers.is_empty() {
         return Err(Error::NoCarrier);
     }
-    let Marked {
-        host,
-        parts,
-        marked,
-        written,
-    } = mark(&mut model, payload, key, options)?;
+    let Held {
+        payload,
+        marked:
+            Marked {
+                host,
+                parts,
+                marked,
+                written,
+            },
+        read_back,
+    } = match hold(&mut model, payload, key, options) {
+        Err(refusal) if is_of_the_model(&refusal) => {
+            return Err(advised(refusal, &mut model, payload, key, options)?);
+        }
+        held => held?,
+    };
     let distortion = Distortion::between(&host.positions, &marked.positions);
     let deformation = Deformation::between(&host, &parts, &marked.positions);
-    let mut marked_files = model.files.clone();
-    marked_files.extend(written.files.clone());
-    let copy = Model::new(&written.model).with_files(&marked_files);
-    let read_back = detect(copy.with_progress(&mut model), key, None)?;
-    if read_back.verdict != Verdict::Found || read_back.number != Some(payload.number()) {
-        let addresses = read_back
-            .details()
-            .carriers
-            .iter()
-            .map(|carrier| carrier.addresses)
-            .sum();
-        return Err(Error::Unreadable { addresses });
-    }
     let forecast = forecast(&host, &marked, &read_back, key, payload, &mut model)?;
+    let is_fragile = is_fragile(&forecast);
     let report = EmbedReport {
-        tag: payload.tag(),
-        number: payload.number(),
+        tag: payload.and_then(Payload::tag),
+        number: payload.map(Payload::number),
         vertices: host.positions.len(),
         moved_vertices: distortion.num_moved,
         diagonal: diagonal(&host.positions),
@@ -85,7 +79,8 @@ fn embed_in(
         max_rel: distortion.max_rel,
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
-        warnings: warnings(&deformation),
+        is_fragile,
+        warnings: warnings(&deformation, payload, is_fragile),
         strength: options.strength.rms_rel(),
         read_back,
         forecast,
@@ -99,10 +94,47 @@ fn embed_in(
     })
 }
 
-/// What may be seen of a deformation: more than the strong strength's.
-fn warnings(deformation: &Deformation) -> Vec<String> {
+/// A refusal, with what would help: that is tried.
+fn advised(
+    refusal: Error,
+    model: &mut Model,
+    payload: Payload,
+    key: &Key,
+    options: &EmbedOptions,
+) -> Result<Error, Error> {
+    let (strong, all) = (Strength::STRONG, EmbedOptions::default());
+    let is_weaker = options.strength.rms_rel() < strong.rms_rel();
+    let is_without_some = options.carriers.len() < all.carriers.len();
+    let mut helps = |options: &EmbedOptions| match hold(model, payload, key, options) {
+        Err(other) if is_of_the_model(&other) => Ok(false),
+        held => held.map(|_| true),
+    };
+    let advice = if is_without_some && helps(&all.with_strength(options.strength))? {
+        Advice::AllCarriers
+    } else if is_weaker && helps(&options.clone().with_strength(strong))? {
+        Advice::Strong
+    } else {
+        Advice::Nothing
+    };
+    Ok(Error::Refused {
+        refusal: Box::new(refusal),
+        advice,
+    })
+}
+
+/// What its owner should know of a mark: that it holds no payload, that the usual steps of a web pipeline take it, and what may be seen
+/// of it, which is more than the strong strength's deformation.
+fn warnings(deformation: &Deformation, payload: Option<Payload>, is_fragile: bool) -> Vec<String> {
     let bounds = Bounds::STRONG;
     let mut warnings = Vec::new();
+    if payload.is_none() {
+        warnings.push(WITHOUT_PAYLOAD.to_owned());
+    }
+    if is_fragile {
+        warnings.push(
+            "the mark is fragile: rounding positions as web pipelines do takes it, so only copies as they are will show it".to_owned(),
+        );
+    }
     if deformation.worst_part > 2.0 * bounds.part {
         warnings.push(format!(
             "a part of the model is deformed by {:.1} % of its own size: look at it, or take a smaller strength",
@@ -116,130 +148,4 @@ fn warnings(deformation: &Deformation) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// What is left of an embedding once it is written.
-struct Marked {
-    host: Mesh,
-    parts: Parts,
-    marked: Mesh,
-    written: Written,
-}
-
-/// Reads, displaces and writes.
-fn mark(
-    model: &mut Model,
-    payload: Payload,
-    key: &Key,
-    options: &EmbedOptions,
-) -> Result<Marked, Error> {
-    model.step(Stage::Read, 0.0)?;
-    let mut document = Document::read(model.bytes, model.files)?;
-    let scene = Scene::gather(&document)?;
-    model.step(Stage::Embed, 0.0)?;
-
-    let codeword = Codeword::new(Checked::new(key).message(payload));
-    let mark = Mark {
-        key,
-        codeword: &codeword,
-    };
-    let mut mesh = scene.mesh.clone();
-    let parts = scene.parts();
-    let leeway = Leeway::new(&scene.mesh, &parts, options.strength.bounds());
-    let chosen: Vec<Carrier> = Carrier::ALL
-        .into_iter()
-        .filter(|carrier| options.carriers.contains(carrier))
-        .collect();
-    let mut refusals = Vec::new();
-    let limit = options.strength.rms_rel();
-    for &carrier in &chosen {
-        let is_first = mesh == scene.mesh;
-        let rms_rel = if is_first {
-            limit
-        } else {
-            // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
-            let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
-            (below * limit).sqrt() * Carrier::SHARE_ON_TOP
-        };
-        let host = Host {
-            mesh: &mesh,
-            leeway: &leeway,
-            admissible: &scene.admissible,
-            rms_rel,
-            hidden: options.strength.is_hidden(),
-            on_top: !is_first,
-        };
-        match carrier.embed(&host, &mark, model) {
-            Ok(displacement) => mesh
-                .positions
-                .iter_mut()
-                .zip(displacement)
-                .for_each(|(position, d)| *position += d),
-            Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
-            Err(refusal) => refusals.push(refusal),
-        }
-    }
-    if refusals.len() == chosen.len() {
-        return Err(refusals.pop().map_or(Error::NoCarrier, Error::Carrier));
-    }
-
-    model.step(Stage::Write, 0.0)?;
-    // Each carrier keeps to a limit of its own: together they exceed the whole's by a few percent, which quantizers do not
-    // notice.
-    let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
-    let scale = if taken > limit { limit / taken } else { 1.0 };
-    let pairs = mesh.positions.iter().zip(&scene.mesh.positions);
-    let displacement: Vec<DVec3> = pairs
-        .map(|(marked, host)| (*marked - *host) * scale)
-        .collect();
-    // What is done with makes room: models of a million vertices are marked in a browser tab too.
-    drop(mesh);
-    let positions = write(model, &mut document, &scene, &leeway, displacement)?;
-    drop(leeway);
-    let host = scene.mesh;
-    let written = document.write()?;
-    drop(document);
-    let marked = host.with_positions(positions);
-    model.step(Stage::Write, 1.0)?;
-    Ok(Marked {
-        host,
-        parts,
-        marked,
-        written,
-    })
-}
-
-/// Displaces the vertices of a document that was just read, and says where they are then. Those that rounding to the file's numbers takes
-/// too far, or whose triangles it turns too far, stay where they were.
-pub(super) fn write(
-    model: &Model,
-    document: &mut Document,
-    scene: &Scene,
-    leeway: &Leeway,
-    mut displacement: Vec<DVec3>,
-) -> Result<Vec<DVec3>, Error> {
-    loop {
-        scene.scatter(document, &displacement)?;
-        let positions = scene.positions_in(document)?;
-        let mut beyond = leeway.beyond(&positions);
-        beyond.retain(|&vertex| displacement[vertex as usize] != DVec3::ZERO);
-        if beyond.is_empty() {
-            return Ok(positions);
-        }
-        hold(&mut displacement, &scene.admissible, &beyond);
-        *document = Document::read(model.bytes, model.files)?;
-    }
-}
-
-/// Leaves vertices, and those that move with them, where they are.
-fn hold(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32]) {
-    for &vertex in vertices {
-        displacement[vertex as usize] = DVec3::ZERO;
-    }
-    for orbit in &admissible.orbits {
-        let members = || orbit.members.iter().map(|&(vertex, _)| vertex as usize);
-        if members().any(|vertex| displacement[vertex] == DVec3::ZERO) {
-            members().for_each(|vertex| displacement[vertex] = DVec3::ZERO);
-        }
-    }
 }

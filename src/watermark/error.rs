@@ -9,6 +9,28 @@ use crate::key::KeyError;
 use crate::progress::Cancelled;
 use crate::scene::SceneError;
 
+/// What would help a model that is refused. It was tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Advice {
+    /// All carriers.
+    AllCarriers,
+    /// The strong strength.
+    Strong,
+    /// Nothing that can be chosen.
+    Nothing,
+}
+
+impl std::fmt::Display for Advice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Advice::AllCarriers => "with all carriers it can be marked",
+            Advice::Strong => "at the strong strength it can be marked",
+            Advice::Nothing => "no carrier and no strength up to strong helps",
+        })
+    }
+}
+
 /// Why nothing was embedded, measured or read. "No mark found" is a result, not an error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -44,12 +66,20 @@ pub enum Error {
     NoCarrier,
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
-        "the mark could not be read back from the marked model, so nothing was returned: the model offers {addresses} places \
-         for symbols; a greater strength or another key may do"
+        "the mark could not be read back from the marked model, so nothing was returned{}",
+        if *has_axes { "" } else { ": its shape looks alike from several sides" }
     )]
     Unreadable {
-        /// Distinct addresses of the marked model.
-        addresses: usize,
+        /// Whether the shape has axes of its own.
+        has_axes: bool,
+    },
+    /// The model is refused for what it is.
+    #[error("{refusal}; {advice}")]
+    Refused {
+        /// Why: what came nearest.
+        refusal: Box<Error>,
+        /// What would help.
+        advice: Advice,
     },
     /// The model was read back, and its note was not found: nothing was written.
     #[error(
@@ -76,6 +106,7 @@ impl Error {
             Error::Strength(_) => "options.strength",
             Error::NoCarrier => "options.no-carrier",
             Error::Unreadable { .. } => "watermark.unreadable",
+            Error::Refused { refusal, .. } => refusal.code(),
             Error::NoteUnreadable => "note.unreadable",
             Error::Cancelled(_) => "aborted",
         }

@@ -1,7 +1,6 @@
-//! What a model is made of, and what it could hold.
+//! What a model is made of.
 
 use super::{Error, Model};
-use crate::carrier::Carrier;
 use crate::digest::sha256;
 use crate::document::{Container, Document};
 use crate::geometry::diagonal;
@@ -39,26 +38,11 @@ pub struct Inspection {
     pub nodes: usize,
     /// As the document says.
     pub extensions_used: Vec<String>,
-    /// What each carrier could hold.
-    pub capacity: Vec<CarrierCapacity>,
     /// SHA-256 of the main file.
     pub sha256: String,
 }
 
-/// What one carrier could hold.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-#[non_exhaustive]
-pub struct CarrierCapacity {
-    /// Which carrier.
-    pub name: Carrier,
-    /// Distinct addresses.
-    pub addresses: usize,
-    /// Distinct addresses that a mark of 48 bits needs.
-    pub needed_addresses: usize,
-}
-
-/// Describes a model.
+/// Describes a model. What it can hold is [`capacity`](crate::capacity)'s to say, which takes longer.
 ///
 /// # Errors
 /// As [`measure`](crate::measure).
@@ -68,11 +52,6 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
     let document = Document::read(model.bytes, model.files)?;
     let mesh = Scene::gather(&document)?.mesh;
     model.step(Stage::Measure, 0.0)?;
-    let capacity = |carrier: Carrier| CarrierCapacity {
-        name: carrier,
-        addresses: carrier.num_addresses(&mesh),
-        needed_addresses: carrier.needed_addresses(),
-    };
     let edges = Edges::new(&mesh);
     Ok(Inspection {
         container: match document.container() {
@@ -94,7 +73,6 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
             .sum(),
         nodes: document.nodes().len(),
         extensions_used: document.extensions_used().to_vec(),
-        capacity: Carrier::ALL.into_iter().map(capacity).collect(),
         sha256: sha256(model.bytes),
     })
 }

@@ -17,7 +17,7 @@ struct Heard {
     report: CarrierReading,
     /// Bound of the payload in the report.
     ln_p_payload: f64,
-    /// Whether the suspect offers enough for a payload to be read, whatever key it is read with.
+    /// Whether the suspect offers enough for a mark to be found, whatever key it is read with.
     is_enough: bool,
     /// What was decoded where another payload was expected.
     other: Option<Other>,
@@ -118,8 +118,14 @@ impl Judge {
             (None, Some(expected)) if !is_any_decoded => (self.fit(hypotheses, expected), None),
             (decoded, _) => (decoded, None),
         };
-        let charged = |h: &Hypothesis| union(pilots(&h.symbols).ln_p(), self.charge(h));
-        let pilots = hypotheses.iter().map(charged).fold(0.0, f64::min);
+        let charged = |h: &Hypothesis| {
+            let presence = against(&h.symbols, |symbol| Codeword::Presence.sign(symbol));
+            union(
+                presence.ln_p().min(pilots(&h.symbols).ln_p()),
+                self.charge(h),
+            )
+        };
+        let ln_p_presence = hypotheses.iter().map(charged).fold(0.0, f64::min);
         let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| candidate.ln_p);
         // A payload is named where chance is excluded, as the verdict is found: whoever learns a payload that chance gave, and
         // expects it from then on, no longer pays for having guessed it.
@@ -131,7 +137,7 @@ impl Judge {
         Heard {
             report: CarrierReading {
                 name,
-                ln_p: pilots.min(ln_p_payload),
+                ln_p: ln_p_presence.min(ln_p_payload),
                 tag: payload.and_then(Payload::tag),
                 number: payload.map(Payload::number),
                 piece: piece.filter(|&piece| piece > 0),
@@ -146,7 +152,7 @@ impl Judge {
             ln_p_payload,
             is_enough: {
                 let most = name.most_exponent(reading.num_addresses);
-                let charge = |h: &Hypothesis| self.ln_guesses() + self.charge(h) + LN_CARRIERS;
+                let charge = |h: &Hypothesis| self.charge(h) + LN_CARRIERS;
                 let first = hypotheses.first(); // all of RING's are charged alike, and of SOLID there is enough or nothing
                 first.is_some_and(|h| charge(h) - most <= LN_P_FOUND)
             },
@@ -164,11 +170,10 @@ impl Judge {
     }
 
     /// What a hypothesis is charged: its own share, the number of tests that are made of it, and the number of keys. The tests are
-    /// the pilots alone and all symbols against a payload; where a payload is expected, also the symbols that are no pilots against
-    /// it. Another payload than the expected one is found by none of them: that it is named where it passes with the pilots'
-    /// share is a fourth event, which makes 1e-9 with the two that find.
+    /// the pilots alone, all symbols against a mark without a payload, and all symbols against a payload; where a payload is
+    /// expected, also the symbols that are no pilots against it, and all symbols against another payload, which is named.
     fn charge(&self, hypothesis: &Hypothesis) -> f64 {
-        let tests = if self.expected.is_some() { 3.0 } else { 2.0 };
+        let tests = if self.expected.is_some() { 5.0 } else { 3.0 };
         hypothesis.ln_num_tests + libm::log(tests) + self.ln_num_keys
     }
 
@@ -268,6 +273,8 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
     } else if other.is_some() {
         let reason = "The model carries a mark of this key, but with another payload.";
         (Verdict::Partial, Some(reason))
+    } else if ln_p <= LN_P_FOUND {
+        (Verdict::Present, None)
     } else if ln_p <= LN_P_TRACE {
         let reason =
             "Something of this key is there, but too little to read its payload with certainty.";
@@ -298,7 +305,7 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
             agreement,
             carriers: heard.into_iter().map(|heard| heard.report).collect(),
         },
-        shows_details: verdict == Verdict::Found,
+        shows_details: matches!(verdict, Verdict::Found | Verdict::Present),
     }
 }
 

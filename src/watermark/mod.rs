@@ -1,20 +1,23 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
+mod capacity;
 mod embed;
 mod error;
 mod extract;
 mod forecast;
 mod inspect;
 mod judge;
+mod marking;
 mod model;
 mod note;
 mod options;
 mod report;
 
+pub use capacity::{Capacity, Holds, capacity};
 pub use embed::{Embedding, embed};
-pub use error::Error;
+pub use error::{Advice, Error};
 pub use extract::{detect, extract, extract_many, measure, verify};
-pub use inspect::{CarrierCapacity, Inspection, inspect};
+pub use inspect::{Inspection, inspect};
 pub use model::{Model, file_names};
 pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,

@@ -1,6 +1,6 @@
 //! Notes: a text in the distances of all vertices from the centroid, beside the mark or without one. Read with the key alone.
 
-use super::embed::write;
+use super::marking::write;
 use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
 use crate::carrier::direction::{Cells, NUM_TESTS};

@@ -11,6 +11,9 @@ use serde::{Serialize, Serializer};
 pub enum Verdict {
     /// A payload was read, and the chance of that without the key is at most 1e-9.
     Found,
+    /// A mark of this key is there, and the chance of that without the key is at most 1e-9. It holds no payload, or none that can be
+    /// read.
+    Present,
     /// Something of this key is there, but not enough.
     Partial,
     /// No evidence of this key, which does not prove that the model is not its owner's.
@@ -24,6 +27,7 @@ impl Verdict {
     pub fn sentence(self) -> &'static str {
         match self {
             Verdict::Found => "Your mark was found.",
+            Verdict::Present => "Your mark is there, without a payload that can be read.",
             Verdict::Partial => "A mark fits partly.",
             Verdict::None => {
                 "No evidence of this key. This does not prove that the model is not yours."
@@ -71,7 +75,7 @@ pub enum Input {
 /// A reading with a key.
 ///
 /// What may be said of it to anybody are the fields that can be seen. What else there is follows the key, and is
-/// [`details`](Self::details): as JSON it is there where the verdict is found, else only after [`with_details`](Self::with_details).
+/// [`details`](Self::details): as JSON it is there where the verdict is found or present, else only after [`with_details`](Self::with_details).
 /// `Debug` prints it always.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -145,10 +149,10 @@ impl Serialize for Extraction {
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub struct EmbedReport {
-    /// The payload as a tag; `None` for the one number that has none.
+    /// The payload as a tag; `None` for the one number that has none, and for a mark without a payload.
     pub tag: Option<String>,
-    /// The payload as a number.
-    pub number: u64,
+    /// The payload as a number; `None` for a mark without a payload, which a model gets that is too small to hold one.
+    pub number: Option<u64>,
     /// Welded vertices of the scene.
     pub vertices: usize,
     /// How many of them moved.
@@ -165,7 +169,9 @@ pub struct EmbedReport {
     /// The largest angle, in degrees, by which a triangle turned that is no sliver. At most 10 at the subtle and balanced strengths, 20 at
     /// the strong one; none turns over.
     pub worst_turn_degrees: f64,
-    /// What may be seen, in sentences: nothing, but for strengths that are given as a number.
+    /// Whether rounding positions as web pipelines do takes the mark: the forecast `web` is red.
+    pub is_fragile: bool,
+    /// What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen.
     pub warnings: Vec<String>,
     /// The strength that was asked for.
     pub strength: f64,
@@ -197,7 +203,7 @@ pub enum Level {
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub struct Forecast {
-    /// Which attack: `none`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-70` or `crop`.
+    /// Which attack: `none`, `web`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-70` or `crop`.
     pub attack: &'static str,
     /// What is likely.
     pub level: Level,

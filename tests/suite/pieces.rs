@@ -181,7 +181,8 @@ fn pieces_that_are_instances_share_their_mark() {
         key: &key(1),
         codeword: &Codeword::new(message),
     };
-    let displacement = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap();
+    let embedded = Carrier::Solid.embed(&host, &mark, &mut ignore);
+    let displacement = embedded.unwrap().displacement;
     let (first, second) = displacement.split_at(num as usize);
     assert!(first == second && first.iter().any(|d| *d != DVec3::ZERO));
     let displaced = mesh

@@ -3,7 +3,7 @@
 use crate::support::fixtures::{asteroid, key, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{crop, reorder, similarity};
-use meshmark::internals::carrier::ring::{Measurement, NEEDED_ADDRESSES, num_addresses};
+use meshmark::internals::carrier::ring::Measurement;
 use meshmark::internals::carrier::{Carrier, Host, Hypothesis, Mark, StoredError};
 use meshmark::internals::code::{Codeword, Symbol};
 use meshmark::internals::detection::Statistic;
@@ -27,7 +27,8 @@ fn marked(mesh: &Mesh, admissible: &Admissible) -> Vec<DVec3> {
         key: &key(1),
         codeword: &Codeword::new(MESSAGE),
     };
-    Carrier::Ring.embed(&host, &mark, &mut ignore).unwrap()
+    let embedded = Carrier::Ring.embed(&host, &mark, &mut ignore);
+    embedded.unwrap().displacement
 }
 
 fn displaced(mesh: &Mesh, displacement: &[DVec3]) -> Mesh {
@@ -217,15 +218,9 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
     };
     let error = Carrier::Ring.embed(&host, &mark, &mut ignore).unwrap_err();
     assert_eq!(error.code(), "carrier.too-few-addresses");
-    let available = num_addresses(&torus);
-    assert!(available < NEEDED_ADDRESSES);
     let message = error.to_string();
-    for number in [200, available, NEEDED_ADDRESSES] {
-        assert!(
-            message.contains(&number.to_string()),
-            "{message} names {number}"
-        );
-    }
+    assert!(message.contains("its 200 vertices"), "{message}");
+    assert!(message.contains("a mark needs 140"), "{message}");
 }
 
 /// Two copies of one mesh, one turned and larger, moved by one displacement.

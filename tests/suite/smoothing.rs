@@ -231,10 +231,12 @@ fn sphere_error(mesh: &Mesh) -> f64 {
         .triangles
         .iter()
         .map(|&triangle| mesh.corners(triangle));
-    let samples = corners.flat_map(|corners| quadrature.samples(corners));
-    let terms = samples.map(|sample| {
-        let distance = sample.point.length() - 1.0;
-        distance * distance * sample.area.length()
+    let terms = corners.flat_map(|corners| {
+        let (area, samples) = quadrature.samples(corners);
+        samples.map(move |sample| {
+            let distance = sample.point.length() - 1.0;
+            distance * distance * area.length()
+        })
     });
     terms.sum()
 }

@@ -43,6 +43,7 @@ test("real results have exactly the declared shapes", () => {
   assert.deepEqual(contract.differences("Verification", facade.verify(evidence, key, TAG)), []);
   assert.deepEqual(contract.differences("Verification", facade.verify(evidence, key, 12345)), []);
   assert.deepEqual(contract.differences("Inspection", facade.inspect(model)), []);
+  assert.deepEqual(contract.differences("Capacity", facade.capacity(model)), []);
   assert.ok(key instanceof Uint8Array && key.length === 32);
   assert.ok(evidence instanceof Uint8Array);
   assert.equal(typeof facade.version(), "string");

@@ -16,6 +16,7 @@ export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F
   verify: true,
   detect: true,
   inspect: true,
+  capacity: true,
   demoModel: true,
   version: true,
 };

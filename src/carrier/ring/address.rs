@@ -45,10 +45,6 @@ impl Turn {
     }
 }
 
-/// Distinct addresses without which a mark of 48 bits cannot be read: a key owns a quarter, and perfect agreement of
-/// n addresses of equal weight gives ln p = -n + 48 ln 2 + ln 20, which must pass ln 1e-9.
-pub const NEEDED_ADDRESSES: usize = 228;
-
 /// Below so many distinct addresses of one kind, the embedder looks at the next.
 const FEW_ADDRESSES: usize = 300;
 

@@ -83,15 +83,6 @@ struct Sum {
     im: f64,
 }
 
-/// Distinct addresses of the kind that the embedder would take in a mesh.
-pub fn num_addresses(mesh: &Mesh) -> usize {
-    let neighbourhoods = Neighbourhoods::new(mesh);
-    let features = Features::new(&mesh.positions, &neighbourhoods);
-    let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
-    let by_geometry = address::by_geometry(&mesh.positions, &neighbourhoods, &features);
-    address::choose(mesh, &by_connectivity, &by_geometry, &features.usable).1
-}
-
 impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {

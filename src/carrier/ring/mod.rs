@@ -19,9 +19,8 @@ mod embed;
 mod feature;
 mod measurement;
 
-pub use address::NEEDED_ADDRESSES;
 pub use embed::embed;
-pub use measurement::{Measurement, num_addresses};
+pub use measurement::Measurement;
 
 use crate::code::Symbol;
 use crate::key::{Key, Prf, unit};

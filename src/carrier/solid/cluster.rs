@@ -55,14 +55,15 @@ pub fn clusters(mesh: &Mesh, pose: &Pose, pitch: f64) -> Vec<Cluster> {
     let to_frame = pose.axes.transpose() * (1.0 / (pose.size * pose.size));
     let mut cells = Cells::default();
     for &triangle in &mesh.triangles {
-        for sample in quadrature.samples(mesh.corners(triangle)) {
+        let (area, samples) = quadrature.samples(mesh.corners(triangle));
+        let area = to_frame * area;
+        let weight = area.length();
+        for sample in samples {
             let y = pose.canonical(sample.point);
             if y.abs().max_element() >= EXTENT {
                 continue;
             }
             let corner = (y / cell).floor();
-            let area = to_frame * sample.area;
-            let weight = area.length();
             let offset = y - corner * cell;
             let sum = cells.at(number(corner));
             sum.centre += offset * weight;
@@ -173,10 +174,24 @@ struct Cells {
     found: Vec<(u64, Cluster)>,
     /// Index in `found` plus 1; 0 is free. A power of two, at most half full.
     slots: Vec<u32>,
+    /// The index of the cell that was met last: it is mostly met again.
+    last: usize,
 }
 
 impl Cells {
     fn at(&mut self, number: u64) -> &mut Cluster {
+        if self
+            .found
+            .get(self.last)
+            .is_none_or(|last| last.0 != number)
+        {
+            self.last = self.find(number);
+        }
+        &mut self.found[self.last].1
+    }
+
+    /// The index of a cell, which is made if there is none yet.
+    fn find(&mut self, number: u64) -> usize {
         if 2 * self.found.len() >= self.slots.len() {
             self.slots = vec![0; (4 * self.found.len()).next_power_of_two().max(1024)];
             for index in 0..self.found.len() {
@@ -189,7 +204,7 @@ impl Cells {
             self.found.push((number, Cluster::default()));
             self.slots[slot] = self.found.len() as u32;
         }
-        &mut self.found[self.slots[slot] as usize - 1].1
+        self.slots[slot] as usize - 1
     }
 
     /// Where a number is, or would be (Fibonacci hashing, linear probing).

@@ -12,9 +12,9 @@ use super::problem::Problem;
 use super::quantizer::{cosine, steps_for};
 use super::window::{Window, windows};
 use crate::carrier::qim::curvature;
-use crate::carrier::{Carrier, CarrierError, Host, Mark};
+use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs};
 use crate::detection::Statistic;
-use crate::geometry::{Pose, diagonal, oriented};
+use crate::geometry::{Pose, diagonal, oriented, rounded_for_web};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, step};
 use glam::{DMat3, DVec3};
@@ -27,22 +27,36 @@ const LEAST_WEIGHT: f64 = 0.02;
 const CLAMPS: [f64; 2] = [3.0, 6.0];
 
 /// Windows without which a mark of 48 bits cannot be read.
-pub const NEEDED_WINDOWS: usize = 100;
+const NEEDED_WINDOWS: usize = 100;
 
-/// The exponent below which a mark is left to another carrier: 62 would do for the payload, a chance of 10^-9 and the tests,
-/// if nothing happened to the model.
-const NEEDED_EXPONENT: f64 = 125.0;
+/// 62 would do for the payload, a chance of 10^-9 and the tests, and the decoder is right from 75 to 80 on; 29 would do for a chance of
+/// 10^-9 and the tests.
+const NEEDS: Needs = Needs {
+    sturdy: 125.0,
+    payload: 90.0,
+    presence: 45.0,
+};
 
-/// Steps smaller than the strength's own are tried until the exponent is this, so many in all.
-const ENOUGH: f64 = 150.0;
+/// The same where a detector has to scan: the pilots are spent on that, and two thirds of the symbols are left to testify.
+const NEEDS_SCANNED: Needs = Needs {
+    sturdy: 188.0,
+    payload: 135.0,
+    presence: 67.0,
+};
+
+/// Steps smaller than the strength's own are tried until the exponent is so many times what a sturdy mark needs, so many in all.
+const ENOUGH: f64 = 1.2;
 const STEPS_TRIED: usize = 4;
 
-/// The displacement of all V vertices that gives the host the mark, in its own frame.
+/// What more of the limit and larger movements make of an exponent, at most: of 21 models with few vertices none gained more than 1.6.
+const MOST_GAINED: f64 = 2.0;
+
+/// Gives the host the mark in its own frame.
 pub fn embed_in_frame(
     host: &Host,
     mark: &Mark,
     progress: &mut dyn Progress,
-) -> Result<Vec<DVec3>, CarrierError> {
+) -> Result<Embedded, CarrierError> {
     let (mesh, boundary) = oriented(host.mesh);
     let none = |available| CarrierError::TooFewAddresses {
         carrier: Carrier::Solid,
@@ -58,8 +72,11 @@ pub fn embed_in_frame(
     let whole = host.rms_rel * diagonal(&mesh.positions);
     let freedom = freedoms(&mesh, &boundary, host, CLAMPS[0]);
     let typical = typical(&freedom);
-    // Where a detector has to scan, the pilots are spent on that, and two thirds of the symbols are left to testify.
-    let all = if is_determined(&pose) { 1.0 } else { 1.5 };
+    let needs = match is_determined(&pose) {
+        true => NEEDS,
+        false => NEEDS_SCANNED,
+    };
+    let enough = ENOUGH * needs.sturdy;
     let mut embedder = Embedder {
         host,
         lattice: &Lattice::of(mark.key),
@@ -74,27 +91,27 @@ pub fn embed_in_frame(
     };
     let mut best = Attempt::default();
     // What is seen is better than no mark: a hidden one gets more of the limit until there is one.
-    let mut share = if host.hidden { typical } else { 1.0 };
-    while share < 1.0 && best.exponent <= NEEDED_EXPONENT * all {
-        embedder.limit = whole * share;
-        embedder.at_pitches(&candidates, CLAMPS[0], ENOUGH * all, &mut best, progress)?;
-        share *= 2.0;
-    }
-    embedder.limit = whole;
-    for clamp in CLAMPS {
-        if best.exponent <= NEEDED_EXPONENT * all {
-            embedder.at_pitches(&candidates, clamp, ENOUGH * all, &mut best, progress)?;
+    let least = if host.hidden { typical } else { 1.0 };
+    let shares = std::iter::successors(Some(least), |share| Some(2.0 * share));
+    let hidden = shares
+        .take_while(|share| *share < 1.0)
+        .map(|share| (share, CLAMPS[0]));
+    for (number, (share, clamp)) in hidden.chain(CLAMPS.map(|clamp| (1.0, clamp))).enumerate() {
+        let is_hopeless = number > 0 && MOST_GAINED * best.exponent < needs.presence;
+        if best.exponent > needs.sturdy || is_hopeless {
+            break;
         }
+        embedder.limit = whole * share;
+        embedder.at_pitches(&candidates, clamp, enough, &mut best, progress)?;
     }
     step(progress, Stage::Embed, 1.0)?;
-    if best.exponent < NEEDED_EXPONENT * all {
-        return Err(CarrierError::TooWeak {
-            carrier: Carrier::Solid,
-            reached: best.exponent,
-            needed: NEEDED_EXPONENT * all,
-        });
+    Embedded {
+        displacement: best.displacement,
+        carrier: Carrier::Solid,
+        exponent: best.exponent,
+        needs,
     }
-    Ok(best.displacement)
+    .if_present()
 }
 
 struct Embedder<'a> {
@@ -114,7 +131,7 @@ struct Embedder<'a> {
     limit: f64,
 }
 
-/// What one pitch and step reach.
+/// What one pitch and step reach, once a web pipeline has rounded the positions: small steps reach more, and stand less of that.
 #[derive(Default)]
 struct Attempt {
     exponent: f64,
@@ -206,12 +223,7 @@ impl Embedder<'_> {
         let mut ridge = problem.mean_diagonal();
         for round in 0..=ROUNDS {
             crate::progress::step(progress, Stage::Embed, round as f64 / ROUNDS as f64)?;
-            let fluxes = self.fluxes(&displacement, placement, active);
-            let phases: Vec<f64> = fluxes
-                .iter()
-                .zip(active)
-                .map(|(flux, window)| flux / step + window.dither)
-                .collect();
+            let phases = self.phases(&self.moved(&displacement), placement, active, step);
             let exponent = exponent(&phases, active);
             if exponent > best.exponent {
                 best = Attempt {
@@ -241,7 +253,17 @@ impl Embedder<'_> {
             }
             self.keep_to_limits(&mut displacement, clamp);
         }
+        if !best.displacement.is_empty() {
+            let rounded = rounded_for_web(&self.moved(&best.displacement));
+            best.exponent = exponent(&self.phases(&rounded, placement, active, step), active);
+        }
         Ok(best)
+    }
+
+    fn moved(&self, displacement: &[DVec3]) -> Mesh {
+        let positions = self.mesh.positions.iter().zip(displacement);
+        self.mesh
+            .with_positions(positions.map(|(p, d)| *p + *d).collect())
     }
 
     fn keep_to_limits(&self, displacement: &mut [DVec3], clamp: f64) {
@@ -273,19 +295,18 @@ impl Embedder<'_> {
         (squares / displacement.len() as f64).sqrt()
     }
 
-    /// The fluxes of the displaced mesh at the active windows, in its own frame, the axes' signs as the host's: where parts
+    /// The phases of the displaced mesh's fluxes at the active windows, in its own frame, the axes' signs as the host's: where parts
     /// are nearly symmetric the signs would turn over from round to round.
-    fn fluxes(&self, displacement: &[DVec3], placement: &Placement, active: &[Window]) -> Vec<f64> {
-        let positions = self
-            .mesh
-            .positions
-            .iter()
-            .zip(displacement)
-            .map(|(p, d)| *p + *d);
-        let moved = self.mesh.with_positions(positions.collect());
-        let pose = Pose::of_oriented(&moved, &self.boundary)
+    fn phases(
+        &self,
+        moved: &Mesh,
+        placement: &Placement,
+        active: &[Window],
+        step: f64,
+    ) -> Vec<f64> {
+        let pose = Pose::of_oriented(moved, &self.boundary)
             .map_or(self.pose, |pose| pose.aligned_with(&self.pose));
-        let now = windows(&clusters(&moved, &pose, self.finest), placement);
+        let now = windows(&clusters(moved, &pose, self.finest), placement);
         let find = |index| {
             now.binary_search_by_key(&index, |window| window.index)
                 .ok()
@@ -293,7 +314,7 @@ impl Embedder<'_> {
         };
         active
             .iter()
-            .map(|window| find(window.index).unwrap_or(window.flux))
+            .map(|window| find(window.index).unwrap_or(window.flux) / step + window.dither)
             .collect()
     }
 }

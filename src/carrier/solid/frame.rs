@@ -1,6 +1,7 @@
 //! What a surface's frame leaves open: axes whose spreads are near each other may change places, or lie anywhere.
 
 use crate::geometry::Pose;
+use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
 
 /// How well two successive axes of a frame are told apart.
@@ -28,6 +29,11 @@ pub fn axes_of(pose: &Pose) -> [Axes; 2] {
 /// Whether every axis is told apart from the others.
 pub fn is_determined(pose: &Pose) -> bool {
     !axes_of(pose).contains(&Axes::Undetermined)
+}
+
+/// Whether a surface has a frame in which every axis is told apart.
+pub fn has_axes(mesh: &Mesh) -> bool {
+    Pose::of_surface(mesh).is_some_and(|pose| is_determined(&pose))
 }
 
 /// The rotations that take a frame into itself: 4 if its axes are known but for their signs, else 24.

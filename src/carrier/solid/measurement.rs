@@ -107,6 +107,12 @@ impl Suspect {
         Suspect::of(whole.chain(pieces_of(mesh)))
     }
 
+    /// The same, as a whole, in its own frame and with nothing undone.
+    pub fn as_it_is(mesh: &Mesh) -> Suspect {
+        let whole = Surfaces::new(mesh).facing_itself().plain();
+        Suspect::of(std::iter::once(whole))
+    }
+
     /// The same, for a mesh that nobody has turned since it was marked (see [`Surfaces::facing`]), as a whole or in pieces. What the
     /// axes of pieces were is not known, but only pieces that have their own are marked: there is no need to scan.
     pub fn copied(mesh: &Mesh, unmarked: &Surfaces, in_pieces: bool) -> Suspect {

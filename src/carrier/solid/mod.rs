@@ -52,9 +52,8 @@ mod surface;
 mod surfaces;
 mod window;
 
-pub use embed::NEEDED_WINDOWS;
+pub use frame::has_axes;
 pub use measurement::{Measurement, Suspect};
 pub use objects::embed;
 pub use surface::Surface;
 pub use surfaces::Surfaces;
-pub use window::num_windows;

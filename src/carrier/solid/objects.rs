@@ -1,9 +1,9 @@
 //! Embedding in a scene: each of its objects has the mark in its own frame, and keeps it when it is taken out.
 
 use super::embed::embed_in_frame;
-use super::frame::is_determined;
-use crate::carrier::{CarrierError, Host, Mark};
-use crate::geometry::{Piece, Pieces, Pose};
+use super::frame::has_axes;
+use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs};
+use crate::geometry::{Piece, Pieces};
 use crate::mesh::{Admissible, Orbit};
 use crate::progress::Progress;
 use glam::DVec3;
@@ -11,28 +11,26 @@ use glam::DVec3;
 /// The share of a scene's vertices that has to be in marked objects. Where it is not, the scene is marked as one.
 const ENOUGH: f64 = 0.5;
 
-/// The displacement of all V vertices that gives the host the mark: each of its objects, where it has several that can hold one, else
-/// the whole.
+/// Gives the host the mark: each of its objects, where it has several that can hold a sturdy one, else the whole.
 pub fn embed(
     host: &Host,
     mark: &Mark,
     progress: &mut dyn Progress,
-) -> Result<Vec<DVec3>, CarrierError> {
+) -> Result<Embedded, CarrierError> {
     let objects = Pieces::stable_objects(host.mesh);
     let mut scene = Marked::new(host);
     for object in objects {
         scene.mark(object, mark, progress)?;
     }
-    if scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64 {
-        return Ok(scene.displacement);
-    }
-    match embed_in_frame(host, mark, progress) {
-        Err(CarrierError::TooFewAddresses { .. } | CarrierError::TooWeak { .. })
-            if scene.num_marked > 0 =>
-        {
-            Ok(scene.displacement)
-        }
-        whole => whole,
+    let is_enough = scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64;
+    match (scene.embedded(), is_enough) {
+        (Some(scene), true) => Ok(scene),
+        (scene, _) => match (embed_in_frame(host, mark, progress), scene) {
+            (Err(CarrierError::Cancelled(cancelled)), _) => Err(cancelled.into()),
+            (Ok(whole), Some(_)) if whole.is_sturdy() => Ok(whole),
+            (_, Some(scene)) => Ok(scene),
+            (whole, None) => whole,
+        },
     }
 }
 
@@ -44,6 +42,8 @@ struct Marked<'a> {
     is_decided: Vec<bool>,
     /// Vertices of marked objects.
     num_marked: usize,
+    /// What the object that holds most reaches, and needs.
+    best: Option<(f64, Needs)>,
 }
 
 impl<'a> Marked<'a> {
@@ -58,10 +58,21 @@ impl<'a> Marked<'a> {
             displacement: vec![DVec3::ZERO; num_vertices],
             is_decided,
             num_marked: 0,
+            best: None,
         }
     }
 
-    /// Marks an object, where it can hold a mark. One that is an instance of a marked one holds its mark already.
+    fn embedded(self) -> Option<Embedded> {
+        let (exponent, needs) = self.best?;
+        Some(Embedded {
+            displacement: self.displacement,
+            carrier: Carrier::Solid,
+            exponent,
+            needs,
+        })
+    }
+
+    /// Marks an object, where it can hold a sturdy mark. One that is an instance of a marked one holds its mark already.
     fn mark(
         &mut self,
         object: Piece,
@@ -81,7 +92,7 @@ impl<'a> Marked<'a> {
             return Ok(());
         }
         // A detector scans for axes in one piece at most.
-        if !Pose::of_surface(&mesh).is_some_and(|pose| is_determined(&pose)) {
+        if !has_axes(&mesh) {
             return Ok(());
         }
         let admissible = self.admissible_in(&vertices);
@@ -93,13 +104,16 @@ impl<'a> Marked<'a> {
             ..*self.host
         };
         match embed_in_frame(&host, mark, progress) {
-            Ok(displacement) => {
-                self.decide(&vertices, &displacement);
+            Ok(object) if object.is_sturdy() => {
+                self.decide(&vertices, &object.displacement);
                 self.num_marked += vertices.len();
+                if self.best.is_none_or(|(most, _)| object.exponent > most) {
+                    self.best = Some((object.exponent, object.needs));
+                }
                 Ok(())
             }
             Err(CarrierError::Cancelled(cancelled)) => Err(cancelled.into()),
-            Err(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 

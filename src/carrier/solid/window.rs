@@ -4,13 +4,9 @@
 //! about a lattice point L, `F = integral of (1 - q^2)^2 (y - L) . dA`; a displacement d of the surface changes it by
 //! `integral of g d . dA` with `g = (1 - q^2)(3 - 7 q^2)`.
 
-use super::cluster::{Cluster, clusters};
+use super::cluster::Cluster;
 use super::grid::{Grid, ceil};
 use super::lattice::{Placement, RADIUS};
-use super::pitch::{AREAS_TO_EMBED, pitches};
-use crate::geometry::{Pose, oriented};
-use crate::mesh::Mesh;
-use glam::{DMat3, DVec3};
 
 /// The flux at one lattice point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,25 +31,6 @@ const LEAST_ENERGY: f64 = 0.5;
 /// The weight of a window, from the integral of `g^2` over the surface that it sees; not positive for too little.
 pub fn weight(energy: f64) -> f64 {
     energy.sqrt() - LEAST_ENERGY
-}
-
-/// Windows that a mesh offers to a lattice that lies along its axes, as far as its vertices are free to serve them; a key's
-/// own lattice sees about as many.
-pub fn num_windows(mesh: &Mesh) -> usize {
-    let (mesh, boundary) = oriented(mesh);
-    let Some(pose) = Pose::of_oriented(&mesh, &boundary) else {
-        return 0;
-    };
-    let num = |pitch| {
-        let along = Placement {
-            rotation: DMat3::IDENTITY,
-            origin: DVec3::ZERO,
-            pitch,
-        };
-        windows(&clusters(&mesh, &pose, pitch), &along).len()
-    };
-    let most = pitches(mesh.area() / (pose.size * pose.size), AREAS_TO_EMBED).map(num);
-    most.max().unwrap_or(0).min(3 * mesh.positions.len())
 }
 
 /// The windows that see enough of the surface, in increasing order of index.

@@ -6,6 +6,11 @@ use crate::carrier::Reading;
 /// Charged to every hypothesis here, beside what the judge charges.
 const LN_WAYS: f64 = 1.5;
 
+/// What the judge charges for its tests: of a blind reading, and where a payload is expected.
+fn ln_tests(expected: bool) -> f64 {
+    libm::log(if expected { 5.0 } else { 3.0 })
+}
+
 fn key() -> Key {
     Key::from_bytes(&[7; Key::BYTES]).expect("32 bytes")
 }
@@ -80,7 +85,7 @@ fn a_blind_payload_is_charged_its_guess_its_tests_and_its_carriers() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     assert_eq!(found.reason, None);
     near(found.details.agreement, 1.0);
-    let own = -exponent(200, 1.0) + 48.0 * LN_2 + LN_WAYS + LN_2;
+    let own = -exponent(200, 1.0) + 48.0 * LN_2 + LN_WAYS + ln_tests(false);
     near(found.details.carriers[1].ln_p, own);
     near(found.details.ln_p, own + LN_2);
     assert_eq!(found.details.carriers[1].owned_addresses, 200);
@@ -89,12 +94,12 @@ fn a_blind_payload_is_charged_its_guess_its_tests_and_its_carriers() {
 }
 
 #[test]
-fn an_expected_payload_is_charged_three_tests_and_no_guess() {
+fn an_expected_payload_is_charged_five_tests_and_no_guess() {
     let found = judge(Some(payload(5))).conclude(&ring(marked(200, payload(5), 1.0, 1.0), 800));
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(200, 1.0) + LN_WAYS + libm::log(3.0) + LN_2,
+        -exponent(200, 1.0) + LN_WAYS + ln_tests(true) + LN_2,
     );
 }
 
@@ -131,7 +136,7 @@ fn the_loudest_way_speaks() {
         });
         near(
             found.details.ln_p,
-            of_first.ln_p() + 48.0 * LN_2 + LN_WAYS + 2.0 * LN_2,
+            of_first.ln_p() + 48.0 * LN_2 + LN_WAYS + ln_tests(false) + LN_2,
         );
         assert_eq!(found.details.carriers[1].owned_addresses, 180);
     }
@@ -139,23 +144,52 @@ fn the_loudest_way_speaks() {
 
 /// Pilots speak for the key alone: however loud, no payload is found.
 #[test]
-fn pilots_alone_are_a_trace() {
+fn pilots_alone_say_that_a_mark_is_there() {
     let partly = judge(None).conclude(&ring(marked(300, payload(5), 1.0, 0.0), 1200));
-    assert_eq!((partly.verdict, partly.number), (Verdict::Partial, None));
-    assert!(
-        partly
-            .reason
-            .is_some_and(|reason| reason.starts_with("Something of this key"))
-    );
+    assert_eq!((partly.verdict, partly.number), (Verdict::Present, None));
+    assert_eq!(partly.reason, None);
+    assert!(partly.shows_details);
     let num_pilots = places(300)
         .iter()
         .filter(|soft| soft.symbol == Symbol::Pilot)
         .count();
     near(
         partly.details.ln_p,
-        -exponent(num_pilots, 1.0) + LN_WAYS + 2.0 * LN_2,
+        -exponent(num_pilots, 1.0) + LN_WAYS + ln_tests(false) + LN_2,
     );
     near(partly.details.agreement, 0.0);
+}
+
+/// A mark without a payload is heard in all its symbols, blind and where a payload is expected; the limit, from both sides.
+#[test]
+fn a_mark_without_a_payload_is_present() {
+    for expected in [None, Some(payload(5))] {
+        let charge = LN_WAYS + ln_tests(expected.is_some()) + LN_2;
+        let least = ((-LN_P_FOUND + charge) / 300.0).sqrt();
+        for (share, verdict) in [
+            (least - 1e-9, Verdict::Partial),
+            (least + 1e-9, Verdict::Present),
+        ] {
+            let mut symbols = places(300);
+            for soft in &mut symbols {
+                soft.value = share * Codeword::Presence.sign(soft.symbol);
+            }
+            let read = judge(expected).conclude(&ring(symbols, 1200));
+            assert_eq!((read.verdict, read.number), (verdict, None), "{share}");
+            near(read.details.ln_p, -exponent(300, share) + charge);
+        }
+    }
+}
+
+/// However loud it is, no payload is read in it: no message says -1 at every parity.
+#[test]
+fn a_mark_without_a_payload_names_none() {
+    let mut symbols = places(2000);
+    for soft in &mut symbols {
+        soft.value = Codeword::Presence.sign(soft.symbol);
+    }
+    let read = judge(None).conclude(&ring(symbols, 8000));
+    assert_eq!((read.verdict, read.number), (Verdict::Present, None));
 }
 
 /// The limit of a trace, from both sides: pilots that agree a little less and a little more.
@@ -165,7 +199,7 @@ fn a_trace_begins_at_one_in_ten_thousand() {
         .iter()
         .filter(|soft| soft.symbol == Symbol::Pilot)
         .count();
-    let least = ((-LN_P_TRACE + LN_WAYS + 2.0 * LN_2) / num_pilots as f64).sqrt();
+    let least = ((-LN_P_TRACE + LN_WAYS + ln_tests(false) + LN_2) / num_pilots as f64).sqrt();
     for (share, verdict) in [
         (least - 1e-9, Verdict::None),
         (least + 1e-9, Verdict::Partial),
@@ -178,7 +212,7 @@ fn a_trace_begins_at_one_in_ten_thousand() {
 /// The limit of what is found, from both sides, and that a payload is named on one alone.
 #[test]
 fn a_payload_is_found_at_one_in_a_billion() {
-    let charge = LN_WAYS + 2.0 * LN_2 + LN_PAYLOADS;
+    let charge = LN_WAYS + ln_tests(false) + LN_2 + LN_PAYLOADS;
     let least = ((-LN_P_FOUND + charge) / 300.0).sqrt();
     for (share, verdict) in [
         (least - 1e-9, Verdict::Partial),
@@ -213,7 +247,7 @@ fn the_louder_carrier_names_the_payload() {
 
 #[test]
 fn another_payload_is_partly_and_named_where_chance_is_excluded() {
-    let charge = LN_WAYS + libm::log(3.0) + LN_2 + LN_PAYLOADS;
+    let charge = LN_WAYS + ln_tests(true) + LN_2 + LN_PAYLOADS;
     let least = |ln_p: f64| ((-ln_p + charge) / 300.0).sqrt();
     let [trace, found] = [LN_P_TRACE, LN_P_FOUND].map(least);
     for (share, names) in [
@@ -265,7 +299,7 @@ fn an_expected_payload_is_fitted_where_none_is_decoded() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(num_parities, share) + LN_WAYS + libm::log(3.0) + LN_2,
+        -exponent(num_parities, share) + LN_WAYS + ln_tests(true) + LN_2,
     );
     near(found.details.agreement, share * num_parities as f64 / 300.0);
     // Its neighbours share most parities, and do not have the check bits that fit best.
@@ -306,15 +340,15 @@ fn check_bits_have_to_hold() {
         soft.value = codeword.sign(soft.symbol);
     }
     let read = judge(None).conclude(&ring(symbols, 1200));
-    assert_eq!((read.verdict, read.number), (Verdict::Partial, None));
+    assert_eq!((read.verdict, read.number), (Verdict::Present, None));
 }
 
 /// RING's limit of what can be told: places by which a mark could reach 1e-9 at best.
 #[test]
 fn too_few_places_cannot_be_checked() {
-    for (expected, tests, guesses) in [(None, 2.0f64, LN_PAYLOADS), (Some(payload(5)), 3.0, 0.0)] {
+    for expected in [None, Some(payload(5))] {
         let most = |num| Carrier::Ring.most_exponent(num);
-        let needed = -LN_P_FOUND + guesses + libm::log(tests) + LN_WAYS + LN_CARRIERS;
+        let needed = -LN_P_FOUND + ln_tests(expected.is_some()) + LN_WAYS + LN_CARRIERS;
         let enough = (0..)
             .find(|&num| most(num) >= needed)
             .expect("there is one");

@@ -2,13 +2,13 @@
 import { h } from "./dom";
 import { chance } from "./outcome";
 import type { Answer } from "./reading";
-import { count, problem, VERDICTS } from "./words";
+import { count, isMark, problem, VERDICTS } from "./words";
 
 /** What came of one suspect and one key; or of one suspect, why nothing came of it. */
 export type Line = { suspect: string; key: string | null; answer: Answer } | { suspect: string; error: unknown };
 
 export function isFound(line: Line): boolean {
-  return "answer" in line && line.answer.reading.verdict === "found" && !line.answer.isOther;
+  return "answer" in line && isMark(line.answer.reading) && !line.answer.isOther;
 }
 
 /** What was found, above what was not. */
@@ -23,7 +23,7 @@ function nameOf(line: Line): string {
 
 function words({ reading, isOther }: Answer): HTMLElement {
   if (reading.verdict !== "found") {
-    return h("p", { class: "hint" }, VERDICTS[reading.verdict]);
+    return h("p", { class: "hint" }, VERDICTS[reading.verdict], ...(reading.verdict === "present" ? ["; by chance ", chance(reading.lnP!)] : []));
   }
   const tag = h("code", {}, reading.tag ?? String(reading.number));
   const from = reading.input === "evidence" ? "; read from evidence" : "";

@@ -1,7 +1,6 @@
 /** Check: a suspect and a key in, one sentence out; several suspects or keys, and a line for each. */
 import type { DetailedExtraction, Inspection } from "meshmark";
 import { answersList, chargeWords, isFound, type Line } from "./answers";
-import { capacityWords } from "./capacity";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keySource, severalKeys, type KeySource, type NamedKey } from "./key-form";
@@ -14,7 +13,7 @@ import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
 import type { Task } from "./task";
 import { View } from "./view";
-import { homes, plain, VERDICTS } from "./words";
+import { homes, isMark, plain, VERDICTS } from "./words";
 
 const DO_NOT_PASS_ON = "Keep these figures to yourself. They follow your key: whoever gets enough of them, for models of their own making, can make one in which your mark is found.";
 
@@ -40,11 +39,6 @@ export class Check extends View<Stage> {
     watchTag(this.#expected);
     this.#expected.addEventListener("input", () => this.onOther());
     find("#save-evidence").addEventListener("click", () => void this.#saveEvidence());
-  }
-
-  protected override foresee({ capacity }: Inspection): HTMLElement | null {
-    const words = capacityWords(capacity);
-    return words === null ? null : note(words);
   }
 
   /** Says whether the answer still is to what the form asks. */
@@ -161,8 +155,8 @@ export class Check extends View<Stage> {
       isOther ? "partial" : reading.verdict,
       isOther ? `Your key’s mark, with ${reading.tag === null ? "number" : "tag"} ${name}, not ${expected}` : VERDICTS[reading.verdict],
       [`${model.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${expected === null ? "" : `, looked at for the tag ${expected}`}.`, ...sentences(reading)],
-      ...(reading.input === "evidence" && reading.verdict === "found" ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
-      ...(reading.verdict === "found"
+      ...(reading.input === "evidence" && isMark(reading) ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
+      ...(isMark(reading)
         ? [h("p", { class: "hint" }, PROVES), figures, details("Carriers and file", carriers, file)]
         : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures, carriers), details("File", file)]),
       actions(
@@ -190,6 +184,8 @@ function sentences(reading: DetailedExtraction): string[] {
   switch (verdict) {
     case "found":
       return [...(tag === null ? why : [`It carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
+    case "present":
+      return ["Its mark says whose it is, and holds no tag, or none that can be read any more.", ...(where === null ? [] : [`Read from ${where}.`])];
     case "none":
       return ["What was read agrees with this key no better than by chance. This does not prove that the model is not yours."];
     case "cannot-check":

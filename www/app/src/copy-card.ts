@@ -1,11 +1,10 @@
 /** A finished copy in words and figures, and what can be done with it. */
-import type { EmbedReport } from "meshmark";
 import { downloads, reportOf, whose, type Copy } from "./copy";
 import { button, h } from "./dom";
 import { renamed } from "./model";
 import { actions, card, carrierTable, details, displacement, forecastList, numbers, readingRows } from "./outcome";
 import { saveJson } from "./save";
-import { CARRIERS, losses, plain, significant } from "./words";
+import { CARRIERS, holders, isMark, losses, plain, significant } from "./words";
 
 export interface CopyEvents {
   /** A file of the copy is wanted. */
@@ -19,7 +18,7 @@ export interface CopyEvents {
 export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }: CopyEvents): HTMLElement {
   const { marked, report, files, owner, asked } = copy;
   const { readBack } = report;
-  const holds = readBack.verdict === "found";
+  const holds = isMark(readBack);
   const lost = holds ? losses(report.forecast) : null;
   const stronger = ofThisVisit && asked.strength !== "strong" ? [actions(button(`Mark again, ${asked.strength === "subtle" ? "balanced" : "strong"}`, ofThisVisit.onStronger))] : [];
   const earlier = ofThisVisit ? [] : [`Made ${new Date(copy.made).toLocaleString()}, and not downloaded since. This browser keeps it until you download or dismiss it.`];
@@ -34,7 +33,7 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     numbers([
       ...readingRows(readBack),
       ["Owner", owner ?? "a key file"],
-      ["Read from", holders(report), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."],
+      ["Read from", holders(readBack).map((name) => CARRIERS[name].name).join(", "), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."],
     ]),
     displacement(report),
     details(
@@ -42,7 +41,7 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
       carrierTable(readBack.carriers),
       numbers([
         ["Diagonal", `${significant(report.diagonal)} units`, "Of the box around the model, in the units of its file."],
-        ["Tag as a number", String(report.number)],
+        ["Tag as a number", report.number === null ? "none" : String(report.number)],
         ["SHA-256 of the original", h("code", { class: "hash" }, report.hostSha256)],
         ["SHA-256 of the copy", h("code", { class: "hash" }, report.markedSha256)],
       ]),
@@ -55,10 +54,4 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     ),
     actions(button("Check this copy", onCheck), ...(holds && ofThisVisit ? [button("Try to break it", ofThisVisit.onBreak)] : []), button("Dismiss", onDismiss)),
   );
-}
-
-/** The carriers from which the mark was read back; another one may be too weak in this model. */
-function holders({ number, readBack }: EmbedReport): string {
-  const holding = readBack.carriers.filter((carrier) => carrier.number === number);
-  return holding.map(({ name }) => CARRIERS[name].name).join(", ");
 }

@@ -1,7 +1,6 @@
 /** Protect: a model and a key in, a marked copy out; or several models, and as many copies. */
 import type { Carrier, DetailedExtraction, EmbedOptions, Embedding, Inspection } from "meshmark";
 import { button, find, setProblem } from "./dom";
-import { capacityWords } from "./capacity";
 import { copyOf, type Asked, type Copy, type Preset } from "./copy";
 import { engine } from "./engine";
 import { incompleteKeyField, isKeyComplete, keySource, strangerKey, type KeyMaker, type KeySource } from "./key-form";
@@ -15,7 +14,7 @@ import { tagProblem, watchTag } from "./tag";
 import type { Progress } from "./task";
 import { Trial } from "./trial";
 import { View } from "./view";
-import { CARRIERS } from "./words";
+import { CARRIERS, isMark } from "./words";
 
 const STRENGTHS: Record<Preset, string> = {
   subtle: "For surfaces seen very close. Vertices move by at most 0.02 % of the model’s size on average, less where it is smooth.",
@@ -85,11 +84,6 @@ export class Protect extends View<Stage> {
     }
     this.#keepOne(); // a reload may bring back what was chosen before
     void this.#shelf.restore();
-  }
-
-  protected override foresee({ capacity }: Inspection): HTMLElement | null {
-    const words = capacityWords(capacity);
-    return words === null ? null : note(words);
   }
 
   /** A mark needs a carrier: the last one cannot be taken away. */
@@ -186,7 +180,7 @@ export class Protect extends View<Stage> {
     const { model } = this;
     const isExact = isKeyComplete() && this.#tag.value !== "" && tagProblem(this.#tag.value) === null;
     const isNeeded = !this.#shelf.isAskedHere && (!this.#trial || (isExact && !this.#trial.isExact));
-    if (!model || !isNeeded || !this.#isPromising() || this.root.hidden || this.isRunning) {
+    if (!model || !isNeeded || !this.inspection || this.root.hidden || this.isRunning) {
       return;
     }
     const trial = this.#start(model, isExact);
@@ -208,11 +202,6 @@ export class Protect extends View<Stage> {
         this.stage.dropMarked();
       }
     }
-  }
-
-  /** Whether some carrier may hold a mark; where none can, that has been said already. */
-  #isPromising(): boolean {
-    return this.inspection !== undefined && this.inspection.capacity.some(({ addresses, neededAddresses }) => addresses >= neededAddresses);
   }
 
   #start(model: Model, isExact: boolean): Trial<Marking> {
@@ -326,7 +315,7 @@ async function embed(model: Model, makeKey: KeyMaker, { tag, strength, carriers 
 async function markIn(model: Model, makeKey: KeyMaker, progress: Progress): Promise<DetailedExtraction | null> {
   const client = await engine;
   const reading = await withKey(client, makeKey, progress, (key) => detect(client, model, key, null, progress));
-  return reading.verdict === "found" ? reading : null;
+  return isMark(reading) ? reading : null;
 }
 
 function tagWords({ tag, number }: DetailedExtraction): string {

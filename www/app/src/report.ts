@@ -2,7 +2,7 @@
 import type { DetailedExtraction, Extraction } from "meshmark";
 import type { Line } from "./answers";
 import { engine } from "./engine";
-import { problem } from "./words";
+import { isMark, problem } from "./words";
 
 /** @param sha256 of the suspect's main file */
 export async function checkReport(suspect: string, sha256: string | null, expected: string | null, result: DetailedExtraction): Promise<object> {
@@ -18,7 +18,7 @@ export async function checksReport(numSuspects: number, numKeys: number, expecte
 /** Reports of checks are passed on. */
 function told(result: DetailedExtraction): Extraction {
   const { lnP, agreement, carriers, ...verdict } = result;
-  return result.verdict === "found" ? result : verdict;
+  return isMark(result) ? result : verdict;
 }
 
 async function origin(): Promise<{ meshmark: string; made: string }> {

@@ -11,7 +11,7 @@ import { renamed, type Model } from "./model";
 import { actions, flag, type Outcome } from "./outcome";
 import { save } from "./save";
 import { forget, keep, kept } from "./store";
-import { problem } from "./words";
+import { isMark, problem } from "./words";
 
 /** What a form says now. */
 export interface Now {
@@ -187,7 +187,7 @@ export class Shelf {
       control.setAttribute("aria-label", `Download ${name}`);
       return control;
     });
-    const state = report.readBack.verdict === "found" ? `survives ${survived} of ${report.forecast.length} changes` : "the mark does not hold";
+    const state = isMark(report.readBack) ? `survives ${survived} of ${report.forecast.length} changes` : "the mark does not hold";
     const about = h("p", { class: "hint" }, h("code", {}, asked.tag), ` ${owner === null ? "of a key file" : `of ${owner}`}, ${asked.strength}, ${state}`);
     return h("li", {}, h("strong", {}, marked.name), about, actions(...download, ...(entry === this.#shown ? [] : [show])));
   }

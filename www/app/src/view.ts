@@ -90,16 +90,17 @@ export abstract class View<S extends Showing> {
     this.outcome.tell(...ended);
     this.stage.open(model.name);
     this.onOther();
-    const [inspection, problem] = await this.#inspect(model);
+    const inspected = await this.#inspect(model);
     if (model !== this.model) {
       return; // another one came meanwhile
     }
-    this.inspection = inspection;
+    const problem = inspected instanceof HTMLElement ? inspected : undefined;
+    this.inspection = inspected instanceof HTMLElement ? undefined : inspected;
     if (problem) {
       this.outcome.tell(...ended, problem);
     }
     announce(`${model.name} is open.${problem ? ` ${problem.textContent}` : ""}`);
-    await this.stage.show(model, inspection ?? null);
+    await this.stage.show(model, this.inspection ?? null);
   }
 
   /** Says at the form that it is for several models. */
@@ -116,21 +117,16 @@ export abstract class View<S extends Showing> {
     }
   }
 
-  async #inspect(model: Model): Promise<[Inspection | undefined, HTMLElement | null]> {
+  /** What a model is made of, or why that cannot be said. */
+  async #inspect(model: Model): Promise<Inspection | HTMLElement | undefined> {
     if (isEvidence(model)) {
-      return [undefined, null];
+      return undefined;
     }
     try {
-      const inspection = await (await engine).inspect(model.bytes, { files: model.buffers });
-      return [inspection, this.foresee(inspection)];
+      return await (await engine).inspect(model.bytes, { files: model.buffers });
     } catch (error) {
-      return [undefined, errorCard(this.cannot, error)];
+      return errorCard(this.cannot, error);
     }
-  }
-
-  /** What a model's looks already say about the work to come, if anything. */
-  protected foresee(_: Inspection): HTMLElement | null {
-    return null;
   }
 
   /** Hears that the model, or the key, is another one now: what was finished may be of the one before. */

@@ -1,9 +1,13 @@
 /** Numbers and outcomes in words. */
-import type { Carrier, DetailedExtraction, Forecast, Stage, Verdict } from "meshmark";
+import type { Carrier, DetailedExtraction, Extraction, Forecast, Stage, Verdict } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
+
+/** Natural logarithm of the largest chance at which a mark counts as found: 1e-9. */
+const LN_P_FOUND = Math.log(1e-9);
 
 export const VERDICTS: Record<Verdict, string> = {
   found: "Your mark was found",
+  present: "Your mark is there, without a tag",
   partial: "A mark fits partly",
   none: "No evidence of this key",
   "cannot-check": "Cannot check",
@@ -24,6 +28,7 @@ interface AttackWords {
 /** What is tried on a marked model. */
 const ATTACKS: Record<string, AttackWords> = {
   none: { name: "no change at all" },
+  web: { name: "what web pipelines do", meaning: "They round positions to 14 bits by default, of which one is the sign." },
   noise: { name: "noise of 0.1 %", meaning: "Each vertex is shaken by up to 0.1 % of the model’s radius." },
   quantize: { name: "rounding to 11 bits", meaning: "Of positions, as when a model is compressed." },
   smooth: { name: "10 light steps of smoothing", meaning: "In Blender: Smooth Vertices, smoothing 0.1, repeat 10." },
@@ -49,9 +54,19 @@ export function plain(words: string): string {
   return words.replaceAll("payload", "tag");
 }
 
-/** Where a payload was read: "the shape", "the connectivity", or both; `null` where none was. */
-export function homes({ number, carriers }: DetailedExtraction): string | null {
-  const spoke = carriers.filter((carrier) => number !== null && carrier.number === number).map(({ name }) => `the ${CARRIERS[name].home}`);
+/** Whether a mark is there beyond chance, with a tag or without. */
+export function isMark({ verdict }: Extraction): boolean {
+  return verdict === "found" || verdict === "present";
+}
+
+/** The carriers that speak for a mark: those that read its tag or, where it has none, that exclude chance alone. */
+export function holders({ number, carriers }: DetailedExtraction): Carrier[] {
+  return carriers.filter((carrier) => (number === null ? carrier.lnP <= LN_P_FOUND : carrier.number === number)).map(({ name }) => name);
+}
+
+/** The same as places: "the shape", "the connectivity", or both; `null` where none speaks. */
+export function homes(reading: DetailedExtraction): string | null {
+  const spoke = holders(reading).map((name) => `the ${CARRIERS[name].home}`);
   return spoke.length === 0 ? null : new Intl.ListFormat("en").format(spoke);
 }
 

@@ -5,6 +5,7 @@
  */
 import { MeshmarkError } from "./error.js";
 import type {
+  Capacity,
   DetectOptions,
   EmbedOptions,
   Embedding,
@@ -38,6 +39,7 @@ export interface Client {
   verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, options?: ReadOptions & CallOptions): Promise<Verification>;
   detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions & CallOptions): Promise<Extraction>;
   inspect(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Inspection>;
+  capacity(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Capacity>;
   demoModel(options?: CallOptions): Promise<Uint8Array>;
   version(options?: CallOptions): Promise<string>;
   /** Ends the worker; calls under way, and later ones, reject with code `disposed`. */
@@ -61,6 +63,7 @@ export async function createClient({ workerUrl, wasmUrl }: ClientOptions = {}): 
     verify: (evidence, key, expected, options) => remote.call("verify", [evidence, key, expected], options),
     detect: (model, key, options) => remote.call("detect", [model, key], options),
     inspect: (model, options) => remote.call("inspect", [model], options),
+    capacity: (model, options) => remote.call("capacity", [model], options),
     demoModel: (options) => remote.call("demoModel", [], options),
     version: (options) => remote.call("version", [], options),
     dispose: () => remote.dispose(),

@@ -8,6 +8,7 @@ import { asMeshmarkError, MeshmarkError } from "./error.js";
 
 export { MeshmarkError };
 export type {
+  Capacity,
   Carrier,
   CarrierReading,
   DetailedExtraction,
@@ -99,5 +100,6 @@ export const extractMany: typeof wasm.extractMany = guarded(wasm.extractMany);
 export const verify: typeof wasm.verify = guarded(wasm.verify);
 export const detect: typeof wasm.detect = guarded(wasm.detect);
 export const inspect: typeof wasm.inspect = guarded(wasm.inspect);
+export const capacity: typeof wasm.capacity = guarded(wasm.capacity);
 export const demoModel: typeof wasm.demoModel = guarded(wasm.demoModel);
 export const version: typeof wasm.version = guarded(wasm.version);

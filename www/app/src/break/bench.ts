@@ -99,10 +99,10 @@ export class Bench {
 }
 
 function levelOf({ verdict, number }: Extraction, own: number | null): Level {
-  if (verdict === "found" && (own === null || number === own)) {
+  if ((verdict === "found" && (own === null || number === own)) || (verdict === "present" && own === null)) {
     return "green";
   }
-  return verdict === "partial" ? "amber" : "red";
+  return verdict === "partial" || verdict === "present" ? "amber" : "red";
 }
 
 /** Steps that one module takes together; a second mark by itself. */

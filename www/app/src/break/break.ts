@@ -5,7 +5,7 @@ import { incompleteKeyField, isKeyComplete, keySource } from "../key-form";
 import { modelsIn, type Model, type NamedFile } from "../model";
 import { card, errorCard } from "../outcome";
 import { View } from "../view";
-import { VERDICTS } from "../words";
+import { isMark, VERDICTS } from "../words";
 import { Attempt, type Copy, type Work } from "./attempt";
 import { Bench, SECOND_MARK } from "./bench";
 import { Chain } from "./chain";
@@ -111,7 +111,7 @@ export class Break extends View<BreakStage> {
 
   #open(bench: Bench): void {
     const { reading } = bench.first;
-    if (reading.verdict !== "found" && reading.verdict !== "partial") {
+    if (!isMark(reading) && reading.verdict !== "partial") {
       bench.close();
       const why = "There is nothing to break: mark the model with this key first, or give the key that it was marked with.";
       const nothing = card(reading.verdict, VERDICTS[reading.verdict], [why]);

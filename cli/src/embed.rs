@@ -2,7 +2,8 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{open, store_all};
+use crate::file::open;
+use crate::output::Output;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
@@ -15,8 +16,8 @@ use std::path::PathBuf;
 pub struct Embed {
     /// The model: .glb, or .gltf with its buffers beside it
     input: PathBuf,
-    /// Where the marked model goes; changed buffers of a .gltf go beside it
-    output: PathBuf,
+    #[command(flatten)]
+    output: Output,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -38,8 +39,10 @@ impl Embed {
             .with_carriers(self.carriers);
         let host = open(&self.input)?;
         let marked = embed(host.model(&mut clock), payload, &key, &options)?;
-        store_all(&self.input, &self.output, &marked.model, &marked.files)?;
-        Report::done(&marked.report, clock)
+        let stored = self
+            .output
+            .store(&self.input, &marked.model, &marked.files)?;
+        Report::stored(&marked.report, &stored, clock)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Models and what lies beside them, from disk and back.
+//! Models and what lies beside them, from disk.
 
 use crate::clock::Clock;
 use crate::failure::Failure;
@@ -44,7 +44,7 @@ pub fn open(path: &Path) -> Result<Opened, Failure> {
     let mut known = BTreeSet::new();
     // A model that cannot be read names no files; whoever reads it next says what is wrong.
     for uri in file_names(&model).unwrap_or_default() {
-        let buffer = sibling(path, &uri)?;
+        let buffer = inside(path, &uri)?;
         // A small model could have a large file loaded as often as it finds another name for it.
         if let Ok(place) = buffer.canonicalize()
             && !known.insert(place)
@@ -61,35 +61,13 @@ pub fn open(path: &Path) -> Result<Opened, Failure> {
 }
 
 /// A file beside another. A model's URIs are a stranger's words: they may not lead out of its folder.
-fn sibling(path: &Path, name: &str) -> Result<PathBuf, Failure> {
-    let inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
-    if !Path::new(name).components().all(inside) {
+pub fn inside(path: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
+    if !Path::new(name).components().all(is_inside) {
         let words = format!("{name:?} lies outside of the model's folder");
         return Err(Failure::Words(words));
     }
     Ok(path.parent().unwrap_or(Path::new("")).join(name))
-}
-
-/// Writes a changed model and its changed buffers, but never over the buffers of the input.
-pub fn store_all(input: &Path, output: &Path, model: &[u8], files: &Files) -> Result<(), Failure> {
-    let mut outputs = vec![(output.to_owned(), model)];
-    for (name, bytes) in files {
-        let buffer = sibling(output, name)?;
-        if same_file(&buffer, &sibling(input, name)?) {
-            let path = buffer.display();
-            let words =
-                format!("{path} would be overwritten: write the marked model to another folder");
-            return Err(Failure::Words(words));
-        }
-        outputs.push((buffer, bytes));
-    }
-    outputs
-        .iter()
-        .try_for_each(|(path, bytes)| store(path, bytes))
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 pub fn load(path: &Path) -> Result<Vec<u8>, Failure> {

@@ -13,6 +13,7 @@ mod file;
 mod inspect;
 mod measure;
 mod note;
+mod output;
 mod owner;
 mod payload;
 mod report;

@@ -3,6 +3,7 @@
 use crate::clock::Clock;
 use crate::exit::{self, CANNOT_CHECK, FOUND, NOT_FOUND};
 use crate::failure::Failure;
+use crate::output::Stored;
 use meshmark::Verdict;
 use serde::Serialize;
 use serde_json::Value;
@@ -22,6 +23,19 @@ impl Report {
             fields.insert("ms".to_owned(), clock.milliseconds());
         }
         Ok(Report { json, code: FOUND })
+    }
+
+    /// What was done to a model, and which files it became.
+    pub fn stored(
+        report: &impl Serialize,
+        stored: &Stored,
+        clock: Clock,
+    ) -> Result<Report, Failure> {
+        let mut done = Report::done(report, clock)?;
+        if let Value::Object(fields) = &mut done.json {
+            fields.insert("stored".to_owned(), serde_json::to_value(stored)?);
+        }
+        Ok(done)
     }
 
     /// What was read, with an exit code that says whether anything was found.

@@ -298,6 +298,117 @@ fn cli_never_overwrites_the_host_nor_leaves_its_folder() {
     assert!(said.contains("outside"), "{said}");
 }
 
+/// The demo model as a .gltf whose positions and indices are in files of their own, with textures, one of them not there, and one
+/// outside of the folder.
+fn write_gltf_of_many_files(here: &Folder) {
+    let glb = meshmark::demo_model();
+    let json_length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut json: Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
+    let binary = &glb[20 + json_length + 8..];
+    let views = json["bufferViews"].as_array().unwrap().clone();
+    let names = ["buf/positions.bin", "buf/normals.bin", "in dices.bin"];
+    fs::create_dir_all(here.path("in/buf")).unwrap();
+    let mut buffers = Vec::new();
+    for (index, (view, name)) in views.iter().zip(names).enumerate() {
+        let length = view["byteLength"].as_u64().unwrap() as usize;
+        let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
+        fs::write(here.path("in").join(name), &binary[start..start + length]).unwrap();
+        buffers.push(json!({ "byteLength": length, "uri": name.replace(' ', "%20") }));
+        json["bufferViews"][index]["buffer"] = json!(index);
+        json["bufferViews"][index]["byteOffset"] = json!(0);
+    }
+    json["buffers"] = json!(buffers);
+    json["images"] = json!([
+        { "uri": "textures/a%23b.png" },
+        { "uri": "lost.png" },
+        { "uri": "../outside.png" },
+        { "uri": "https://example.org/far.png" },
+        { "uri": "data:image/png;base64,AAAA" },
+    ]);
+    fs::create_dir_all(here.path("in/textures")).unwrap();
+    fs::write(here.path("in/textures/a#b.png"), "picture").unwrap();
+    fs::write(here.path("outside.png"), "picture").unwrap();
+    fs::write(here.path("in/model.gltf"), json.to_string()).unwrap();
+}
+
+#[test]
+fn cli_writes_all_that_a_gltf_names() {
+    let here = Folder::new("complete");
+    write_gltf_of_many_files(&here);
+    let (code, report, said) = here.run(&format!("embed in/model.gltf out/ {ADA} --tag A"));
+    assert_eq!(code, 0, "{report} {said}");
+    let names = [
+        "buf/normals.bin",
+        "buf/positions.bin",
+        "in dices.bin",
+        "textures/a#b.png",
+    ];
+    let written: Vec<&str> = ["model.gltf"].into_iter().chain(names).collect();
+    assert_eq!(report["stored"]["written"], json!(written));
+    assert_eq!(
+        report["stored"]["missing"],
+        json!(["../outside.png", "lost.png"])
+    );
+    for name in names {
+        let [host, marked] =
+            ["in", "out"].map(|folder| fs::read(here.path(folder).join(name)).unwrap());
+        assert_eq!(host == marked, name != "buf/positions.bin", "{name}");
+    }
+    let (code, ..) = here.run(&format!("extract out/model.gltf {ADA}"));
+    assert_eq!(code, 0);
+    let (code, ..) = here.run(&format!(
+        "note embed in/model.gltf -o noted/n.gltf {ADA} --text hello"
+    ));
+    assert_eq!(code, 0);
+    assert!(here.path("noted/textures/a#b.png").exists());
+}
+
+#[test]
+fn cli_leaves_no_half_model() {
+    let here = Folder::new("half");
+    write_gltf_of_many_files(&here);
+    // A folder stands where a buffer has to go.
+    fs::create_dir_all(here.path("out/buf/positions.bin/x")).unwrap();
+    fs::write(here.path("out/in dices.bin"), "before").unwrap();
+    let (code, ..) = here.run(&format!("embed in/model.gltf out/ {ADA} --tag A"));
+    assert_eq!(code, 2);
+    let left = |folder: &str| {
+        let mut names: Vec<String> = fs::read_dir(here.path(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    assert_eq!(left("out"), ["buf", "in dices.bin"]);
+    assert_eq!(left("out/buf"), ["positions.bin"]);
+    assert_eq!(fs::read(here.path("out/in dices.bin")).unwrap(), b"before");
+    // A file stands where a folder has to go.
+    fs::write(here.path("file"), "").unwrap();
+    let (code, ..) = here.run(&format!(
+        "embed in/model.gltf file/deep/model.gltf {ADA} --tag A"
+    ));
+    assert_eq!(code, 2);
+}
+
+#[test]
+fn cli_writes_over_the_input_only_when_asked() {
+    let here = Folder::new("in-place");
+    write_gltf_of_many_files(&here);
+    let (code, _, said) = here.run(&format!("embed in/model.gltf in {ADA} --tag A"));
+    assert_eq!(code, 2);
+    assert!(said.contains("--in-place"), "{said}");
+    let (code, _, said) = here.run(&format!("embed model.glb model.glb {ADA} --tag A"));
+    assert_eq!(code, 2);
+    assert!(said.contains("--in-place"), "{said}");
+    let (code, ..) = here.run(&format!("extract in/model.gltf {ADA}"));
+    assert_eq!(code, 1);
+    let (code, report, said) = here.run(&format!("embed in/model.gltf --in-place {ADA} --tag A"));
+    assert_eq!(code, 0, "{report} {said}");
+    let (code, ..) = here.run(&format!("extract in/model.gltf {ADA}"));
+    assert_eq!(code, 0);
+}
+
 #[test]
 fn cli_writes_and_reads_a_note() {
     let here = Folder::new("note");

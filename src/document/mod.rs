@@ -32,6 +32,7 @@ mod data_uri;
 mod error;
 mod extension;
 mod json;
+mod links;
 mod mesh;
 mod node;
 mod region;
@@ -152,6 +153,16 @@ impl Document {
         let root = Root::parse(&parts.text)?;
         extension::check(&root)?;
         buffer::file_names(&root)
+    }
+
+    /// The files beside it that a model file names, percent-decoded, each once: buffers, images, sounds, what extensions name. What a
+    /// complete copy of the model consists of, beside the model file.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError`] of a container or a text that cannot be read.
+    pub fn linked_files(model: &[u8]) -> Result<Vec<String>, DocumentError> {
+        links::relative(&container::split(model)?.text)
     }
 
     /// Writes the document: byte for byte what was read, except for positions that are not what

@@ -688,6 +688,19 @@ fn external_buffers_are_named_once() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn linked_files_are_named_whatever_names_them() {
+    let text = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a%20b.bin"},{"uri":"data:;base64,AA"}],
+        "images":[{"uri":"t/x.png"},{"uri":"https://example.org/y.png"},{"uri":"//example.org/z.png"},{"uri":"t/x.png"}],
+        "extensions":{"KHR_audio_emitter":{"audio":[{"uri":"s:1.mp3"},{"uri":"1:s.mp3"}]}},"extras":{"uri":""}}"#;
+    assert_eq!(
+        Document::linked_files(text.as_bytes()),
+        Ok(["1:s.mp3", "a b.bin", "t/x.png"]
+            .map(str::to_owned)
+            .to_vec())
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn the_columns_of_a_matrix_are_padded() {
     // The first buffer view has 48 bytes: 4 matrices of 3 columns of 3 bytes, 2 of 3 columns of 6 bytes.
     for (component, count) in [(Component::U8, 4), (Component::U16, 2)] {

@@ -1,7 +1,7 @@
 //! Document -> Scene.
 
 use super::{Count, Placement, Scene, SceneError, inverse, orbits};
-use crate::document::{Document, Node, Primitive, Transform};
+use crate::document::{Document, DocumentError, Node, Primitive, Transform};
 use crate::geometry::{Seams, seams};
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
@@ -123,6 +123,8 @@ fn local_transform(node: &Node) -> DAffine3 {
 /// Placements and triangles before welding. A corner is (placement, element).
 struct Gathering {
     placements: Vec<Placement>,
+    /// The node of each placement.
+    nodes: Vec<usize>,
     worlds: Vec<Vec<DVec3>>,
     triangles: Vec<(u32, [u32; 3])>,
 }
@@ -145,6 +147,7 @@ impl Gathering {
     fn with_room_for(count: &Count) -> Gathering {
         Gathering {
             placements: Vec::new(),
+            nodes: Vec::new(),
             worlds: Vec::new(),
             triangles: Vec::with_capacity(count.triangles as usize),
         }
@@ -194,9 +197,7 @@ impl Gathering {
             .into_iter()
             .map(|p| to_world.transform_point3(DVec3::from_array(p)))
             .collect();
-        if !worlds.iter().all(|world| world.is_finite()) {
-            return Err(SceneError::NotFinite { node: placed.node });
-        }
+        self.nodes.push(placed.node);
         self.placements.push(Placement {
             accessor,
             to_world,
@@ -205,6 +206,30 @@ impl Gathering {
         });
         self.worlds.push(worlds);
         Ok(())
+    }
+
+    /// Whose fault it is that a corner is nowhere: the file's numbers', or the node's transform.
+    fn not_finite(&self, document: &Document, (placement, element): (u32, u32)) -> SceneError {
+        let (placement, element) = (placement as usize, element as usize);
+        let accessor = self
+            .placements
+            .get(placement)
+            .map(|placement| placement.accessor);
+        let locals = accessor.and_then(|accessor| document.positions(accessor).ok());
+        let is_finite = |local: &[f64; 3]| local.iter().all(|component| component.is_finite());
+        match (
+            accessor,
+            locals.and_then(|locals| locals.get(element).map(is_finite)),
+        ) {
+            (Some(accessor), Some(false)) => DocumentError::NonFinitePosition {
+                pointer: format!("/accessors/{accessor}"),
+                element,
+            }
+            .into(),
+            _ => SceneError::NotFinite {
+                node: self.nodes.get(placement).copied().unwrap_or_default(),
+            },
+        }
     }
 
     fn weld(mut self, document: &Document) -> Result<Scene, SceneError> {
@@ -237,6 +262,9 @@ impl Gathering {
         }
         // What is done with makes room: a scene at the limits has 2^24 elements.
         drop(used);
+        if let Some(&corner) = order.iter().find(|&&corner| !world(corner).is_finite()) {
+            return Err(self.not_finite(document, corner));
+        }
         let places: Vec<[u64; 3]> = order.iter().map(|&corner| bits(world(corner))).collect();
         let place = |corner: u32| places.get(corner as usize);
         let mut first: Vec<u32> = vec![0; order.len()];

@@ -13,6 +13,7 @@ mod follow;
 mod gather;
 mod orbits;
 mod plain;
+mod room;
 mod scatter;
 mod uses;
 
@@ -61,6 +62,22 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
+    /// All positions are in bytes that have another use, or in none.
+    #[error(
+        "no vertex can be moved: the bytes of all positions have another use too (an attribute of another name, a morph target, an \
+         animation), or are not stored; export the model with positions of their own"
+    )]
+    NothingMovable,
+    /// The values that positions can take are too far apart for a mark. Told where no mark could be read back.
+    #[error(
+        "the numbers that the file keeps positions in are {percent:.2} % of the model's size apart, too coarse for a mark: 32-bit \
+         numbers far away from the origin are, and integers of few bits; move the model to the origin and keep its place in the \
+         translation of a node, or quantize with more bits"
+    )]
+    CoarseNumbers {
+        /// Their distance, in percent of the diagonal.
+        percent: f64,
+    },
     /// More than 2^24 triangles or vertices (2^22 in a browser tab), 2^20 parts (2^18 there), or 2^20 vertices that no bytes of the
     /// file stand behind; every instance counted.
     #[error(
@@ -85,6 +102,8 @@ impl SceneError {
             SceneError::Document(error) => error.code(),
             SceneError::NoTriangles => "scene.no-triangles",
             SceneError::NotFinite { .. } => "scene.not-finite",
+            SceneError::NothingMovable => "scene.nothing-movable",
+            SceneError::CoarseNumbers { .. } => "scene.coarse-numbers",
             SceneError::TooLarge { .. } => "scene.too-large",
         }
     }

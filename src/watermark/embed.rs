@@ -41,7 +41,21 @@ pub fn embed<'a>(
     key: &Key,
     options: &EmbedOptions,
 ) -> Result<Embedding, Error> {
-    embed_in(model.into(), payload, key, options)
+    let model = model.into();
+    let (bytes, files) = (model.bytes, model.files);
+    embed_in(model, payload, key, options).map_err(|error| explained(error, bytes, files))
+}
+
+/// An error, or what of the file's numbers led to it.
+fn explained(error: Error, bytes: &[u8], files: &Files) -> Error {
+    let coarse = || {
+        let document = Document::read(bytes, files).ok()?;
+        Scene::gather(&document).ok()?.coarse(&document)
+    };
+    match error {
+        Error::Carrier(_) | Error::Unreadable { .. } => coarse().map_or(error, Error::Scene),
+        _ => error,
+    }
 }
 
 fn embed_in(
@@ -136,6 +150,7 @@ fn mark(
     model.step(Stage::Read, 0.0)?;
     let mut document = Document::read(model.bytes, model.files)?;
     let scene = Scene::gather(&document)?;
+    scene.check_movable()?;
     model.step(Stage::Embed, 0.0)?;
 
     let codeword = Codeword::new(Checked::new(key).message(payload));

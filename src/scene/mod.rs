@@ -15,6 +15,7 @@ mod orbits;
 mod plain;
 mod room;
 mod scatter;
+mod surface;
 mod uses;
 
 pub use count::Count;
@@ -62,6 +63,22 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
+    /// A triangle of a surface names a vertex that is not there.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {count}")]
+    NoVertex {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// The number of vertices.
+        count: usize,
+    },
+    /// A vertex of a surface that a triangle uses is not at a finite place.
+    #[error("vertex {vertex} has a position that is not a finite number: repair the mesh first")]
+    NotANumber {
+        /// The vertex.
+        vertex: u32,
+    },
     /// All positions are in bytes that have another use, or in none.
     #[error(
         "no vertex can be moved: the bytes of all positions have another use too (an attribute of another name, a morph target, an \
@@ -102,6 +119,8 @@ impl SceneError {
             SceneError::Document(error) => error.code(),
             SceneError::NoTriangles => "scene.no-triangles",
             SceneError::NotFinite { .. } => "scene.not-finite",
+            SceneError::NoVertex { .. } => "scene.no-vertex",
+            SceneError::NotANumber { .. } => "scene.not-a-number",
             SceneError::NothingMovable => "scene.nothing-movable",
             SceneError::CoarseNumbers { .. } => "scene.coarse-numbers",
             SceneError::TooLarge { .. } => "scene.too-large",

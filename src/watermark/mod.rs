@@ -10,6 +10,7 @@ mod model;
 mod note;
 mod options;
 mod report;
+mod suspect;
 
 pub use embed::{Embedding, embed};
 pub use error::Error;
@@ -23,3 +24,4 @@ pub use options::{EmbedOptions, Strength};
 pub use report::{
     CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Verdict,
 };
+pub use suspect::{Surface, Suspect};

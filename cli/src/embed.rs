@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// Mark a model and read the mark back
 #[derive(Args)]
 pub struct Embed {
-    /// The model: .glb, or .gltf with its buffers beside it
+    /// The model: .glb, .vrm, .b3dm, or .gltf with its buffers beside it; or one of them as .gz
     input: PathBuf,
     #[command(flatten)]
     output: Output,
@@ -41,7 +41,7 @@ impl Embed {
         let marked = embed(host.model(&mut clock), payload, &key, &options)?;
         let stored = self
             .output
-            .store(&self.input, &marked.model, &marked.files)?;
+            .store(&self.input, &host, &marked.model, &marked.files)?;
         Report::stored(&marked.report, &stored, clock)
     }
 }

@@ -2,10 +2,12 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::format::{Format, Wrapping, recognize, unwrap};
+use crate::surface::Triangles;
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::Scene;
-use meshmark::{Files, Model, file_names};
+use meshmark::{Files, Model, Surface, Suspect, file_names};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
@@ -16,6 +18,13 @@ const EVIDENCE: &[u8] = b"MMEV";
 pub struct Opened {
     bytes: Vec<u8>,
     files: Files,
+    wrapping: Wrapping,
+}
+
+/// What is to be checked, as it was found on disk.
+pub enum Found {
+    Model(Opened),
+    Surface(Triangles),
 }
 
 impl Opened {
@@ -26,6 +35,13 @@ impl Opened {
             .with_progress(clock)
     }
 
+    /// A changed model in what this one came wrapped in.
+    pub fn wrapped(&self, path: &Path, model: &[u8]) -> Result<Vec<u8>, Failure> {
+        self.wrapping
+            .wrap(model)
+            .map_err(|error| Failure::file(path, error))
+    }
+
     /// The mesh, as it is seen by whoever checks the model.
     pub fn mesh(&self) -> Result<Mesh, Failure> {
         let document = Document::read(&self.bytes, &self.files).map_err(Failure::of)?;
@@ -34,12 +50,48 @@ impl Opened {
     }
 }
 
+impl Found {
+    /// To look at, watched by a clock.
+    pub fn suspect<'a>(&'a self, clock: &'a mut Clock) -> Suspect<'a> {
+        match self {
+            Found::Model(model) => model.model(clock).into(),
+            Found::Surface(Triangles {
+                positions,
+                triangles,
+            }) => Surface::new(positions, triangles)
+                .with_progress(clock)
+                .into(),
+        }
+    }
+}
+
 /// A model and the external buffers that it names, which are looked for beside it.
 pub fn open(path: &Path) -> Result<Opened, Failure> {
-    let model = load(path)?;
-    if model.starts_with(EVIDENCE) {
+    match find(path)? {
+        (Format::Gltf, bytes, wrapping) => with_files(path, bytes, wrapping),
+        (format, ..) => Err(format.refused(path)),
+    }
+}
+
+/// What is to be checked: glTF, or a surface in another format.
+pub fn open_suspect(path: &Path) -> Result<Found, Failure> {
+    let (format, bytes, wrapping) = find(path)?;
+    Ok(match format {
+        Format::Gltf => Found::Model(with_files(path, bytes, wrapping)?),
+        format => Found::Surface(Triangles::read(path, format, &bytes)?),
+    })
+}
+
+/// A file's kind, its content, and what that was wrapped in.
+fn find(path: &Path) -> Result<(Format, Vec<u8>, Wrapping), Failure> {
+    let (bytes, wrapping) = unwrap(path, load(path)?)?;
+    if bytes.starts_with(EVIDENCE) {
         return Err(Failure::NotAsked(path.to_owned()));
     }
+    Ok((recognize(path, &bytes)?, bytes, wrapping))
+}
+
+fn with_files(path: &Path, model: Vec<u8>, wrapping: Wrapping) -> Result<Opened, Failure> {
     let mut files = Files::new();
     let mut known = BTreeSet::new();
     // A model that cannot be read names no files; whoever reads it next says what is wrong.
@@ -57,6 +109,7 @@ pub fn open(path: &Path) -> Result<Opened, Failure> {
     Ok(Opened {
         bytes: model,
         files,
+        wrapping,
     })
 }
 

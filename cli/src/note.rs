@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub enum Note {
     /// Write a text and read it back
     Embed {
-        /// The model: .glb, or .gltf with its buffers beside it
+        /// The model: .glb, .vrm, .b3dm, or .gltf with its buffers beside it; or one of them as .gz
         input: PathBuf,
         /// 1 to 29 bytes of UTF-8; fewer in models of less than 8192 vertices
         #[arg(long)]
@@ -45,8 +45,9 @@ impl Note {
                 owner,
             } => {
                 let key = owner.key()?;
-                let noted = embed_note(open(&input)?.model(&mut clock), &text, &key)?;
-                let stored = Output::to(output).store(&input, &noted.model, &noted.files)?;
+                let host = open(&input)?;
+                let noted = embed_note(host.model(&mut clock), &text, &key)?;
+                let stored = Output::to(output).store(&input, &host, &noted.model, &noted.files)?;
                 Report::stored(&noted.report, &stored, clock)
             }
             Note::Read { input, owner } => {

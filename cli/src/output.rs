@@ -4,7 +4,7 @@
 //! before is put back if one cannot. So no run leaves half a model, in place or elsewhere.
 
 use crate::failure::Failure;
-use crate::file::{inside, load};
+use crate::file::{Opened, inside, load};
 use clap::Args;
 use meshmark::Files;
 use meshmark::internals::document::Document;
@@ -51,9 +51,16 @@ impl Output {
     }
 
     /// Writes a changed model with all that it names: `changed` files anew, the others as they are beside the input.
-    pub fn store(&self, input: &Path, model: &[u8], changed: &Files) -> Result<Stored, Failure> {
+    pub fn store(
+        &self,
+        input: &Path,
+        host: &Opened,
+        model: &[u8],
+        changed: &Files,
+    ) -> Result<Stored, Failure> {
         let output = self.model(input);
-        let mut plan = Plan::new(&output, model);
+        let wrapped = host.wrapped(&output, model)?;
+        let mut plan = Plan::new(&output, &wrapped);
         let mut missing = Vec::new();
         for name in Document::linked_files(model).map_err(Failure::of)? {
             let (from, to) = match (inside(input, &name), inside(&output, &name)) {

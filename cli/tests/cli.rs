@@ -562,3 +562,96 @@ fn cli_usage_errors_exit_with_2() {
         assert!(said.contains("Usage"), "{said}");
     }
 }
+
+#[test]
+fn cli_reads_suspects_in_other_formats() {
+    let here = Folder::new("formats");
+    here.run(&format!("embed model.glb marked.glb {ADA} --tag ADA-1"));
+    let marked = fs::read(here.path("marked.glb")).unwrap();
+    let json_length = u32::from_le_bytes(marked[12..16].try_into().unwrap()) as usize;
+    let json: Value = serde_json::from_slice(&marked[20..20 + json_length]).unwrap();
+    let binary = &marked[20 + json_length + 8..];
+    let view = |index: usize| {
+        let view = &json["bufferViews"][index];
+        let number = |name: &str| view[name].as_u64().unwrap_or(0) as usize;
+        &binary[number("byteOffset")..][..number("byteLength")]
+    };
+    let numbers = |bytes: &[u8]| -> Vec<[u8; 4]> { bytes.as_chunks().0.to_vec() };
+    // Millimetres, Z up, in text of six digits.
+    let points: Vec<String> = numbers(view(0))
+        .chunks(3)
+        .map(|point| {
+            let [x, y, z] = [0, 1, 2].map(|axis| 1000.0 * f32::from_le_bytes(point[axis]));
+            format!("{x:.5e} {:.5e} {y:.5e}", -z)
+        })
+        .collect();
+    let triangles: Vec<[usize; 3]> = numbers(view(2))
+        .chunks(3)
+        .map(|corners| [0, 1, 2].map(|place| u32::from_le_bytes(corners[place]) as usize))
+        .collect();
+    let lines = |lines: Vec<String>| lines.join("\n");
+    let obj = format!(
+        "# by nobody\n{}\n{}\n",
+        lines(points.iter().map(|point| format!("v {point}")).collect()),
+        lines(
+            triangles
+                .iter()
+                .map(|[a, b, c]| format!("f {} {} {}", a + 1, b + 1, c + 1))
+                .collect()
+        ),
+    );
+    let facet = |[a, b, c]: &[usize; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| &points[*corner]);
+        format!(
+            "facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet"
+        )
+    };
+    let stl = format!(
+        "solid\n{}\nendsolid\n",
+        lines(triangles.iter().map(facet).collect())
+    );
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n{}\n{}\n",
+        points.len(),
+        triangles.len(),
+        lines(points.clone()),
+        lines(
+            triangles
+                .iter()
+                .map(|[a, b, c]| format!("3 {a} {b} {c}"))
+                .collect()
+        ),
+    );
+    for (name, bytes) in [("obj", obj), ("stl", stl), ("ply", ply)] {
+        // Names of files say little.
+        fs::write(here.path("copy"), bytes).unwrap();
+        let (code, report, said) = here.run(&format!("extract copy {ADA}"));
+        assert_eq!(
+            (code, &report["tag"]),
+            (0, &json!("ADA-1")),
+            "{name}: {said}"
+        );
+        let (code, ..) = here.run(&format!("verify copy {ADA} --tag ADA-1"));
+        assert_eq!(code, 0, "{name}");
+        here.run("measure copy copy.mmev");
+        let (code, ..) = here.run(&format!("extract copy.mmev --evidence {ADA}"));
+        assert_eq!(code, 0, "{name}");
+        let (code, report, said) = here.run(&format!("embed copy no.glb {ADA} --tag A"));
+        assert_eq!(
+            (code, &report["error"]["code"]),
+            (2, &json!("file.other-format"))
+        );
+        assert!(said.contains("glTF only"), "{said}");
+    }
+    fs::write(here.path("copy"), "Kaydara FBX Binary").unwrap();
+    let (code, _, said) = here.run(&format!("extract copy {ADA}"));
+    assert_eq!(code, 2);
+    assert!(said.contains("FBX"), "{said}");
+    fs::write(here.path("copy"), "v 0 0 0\nv 1 0 0\nf 1 2 3\n").unwrap();
+    let (code, report, _) = here.run(&format!("extract copy {ADA}"));
+    assert_eq!(
+        (code, &report["error"]["code"]),
+        (2, &json!("file.damaged"))
+    );
+}

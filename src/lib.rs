@@ -19,6 +19,8 @@
 //! # }
 //! ```
 //!
+//! A suspect may be a [`Surface`] too: positions and triangles, from whatever format.
+//!
 //! A model is the bytes of a `.glb` or a `.gltf`. Where there is more to say of it, a [`Model`] takes the files that it names, and
 //! hears how far the work is. The folder `examples` has programs that mark, check, test many keys and read a `.gltf` with buffers.
 //!
@@ -60,8 +62,8 @@ pub use scene::SceneError;
 pub use watermark::{
     Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
     Extraction, Forecast, Holds, Input, Inspection, Level, Model, NoteEmbedding, NoteReading,
-    NoteReport, NoteSize, Strength, Verdict, capacity, detect, embed, embed_note, extract,
-    extract_many, file_names, inspect, measure, note_capacity, read_note, verify,
+    NoteReport, NoteSize, Strength, Surface, Suspect, Verdict, capacity, detect, embed, embed_note,
+    extract, extract_many, file_names, inspect, measure, note_capacity, read_note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -2,7 +2,8 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{open, store_all};
+use crate::file::open;
+use crate::output::Output;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
@@ -13,10 +14,10 @@ use std::path::PathBuf;
 /// Mark a model and read the mark back
 #[derive(Args)]
 pub struct Embed {
-    /// The model: .glb, or .gltf with its buffers beside it
+    /// The model: .glb, .vrm, .b3dm, or .gltf with its buffers beside it; or one of them as .gz
     input: PathBuf,
-    /// Where the marked model goes; changed buffers of a .gltf go beside it
-    output: PathBuf,
+    #[command(flatten)]
+    output: Output,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -38,8 +39,10 @@ impl Embed {
             .with_carriers(self.carriers);
         let host = open(&self.input)?;
         let marked = embed(host.model(&mut clock), payload, &key, &options)?;
-        store_all(&self.input, &self.output, &marked.model, &marked.files)?;
-        Ok(Report::done(&marked.report, clock)?.with_fragile(marked.report.is_fragile))
+        let stored = self
+            .output
+            .store(&self.input, &host, &marked.model, &marked.files)?;
+        Ok(Report::stored(&marked.report, &stored, clock)?.with_fragile(marked.report.is_fragile))
     }
 }
 

@@ -25,6 +25,24 @@ pub enum Failure {
         /// Why.
         error: std::io::Error,
     },
+    /// A file of a kind that is not read here.
+    #[error("{}: this is {kind}; {advice}", path.display())]
+    OtherFormat {
+        /// Which.
+        path: PathBuf,
+        /// What it is.
+        kind: &'static str,
+        /// What helps.
+        advice: &'static str,
+    },
+    /// A file of a known kind that is not as it should be.
+    #[error("{}: the file is damaged: {words}", path.display())]
+    Damaged {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        words: String,
+    },
     /// A report that is no JSON.
     #[error(transparent)]
     Report(#[from] serde_json::Error),
@@ -50,6 +68,8 @@ impl Failure {
         match self {
             Failure::Library(error) => error.code(),
             Failure::NotAsked(_) => "evidence.not-asked-for",
+            Failure::OtherFormat { .. } => "file.other-format",
+            Failure::Damaged { .. } => "file.damaged",
             _ => "io",
         }
     }

@@ -1,11 +1,13 @@
-//! Models and what lies beside them, from disk and back.
+//! Models and what lies beside them, from disk.
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::format::{Format, Wrapping, recognize, unwrap};
+use crate::surface::Triangles;
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::Scene;
-use meshmark::{Files, Model, file_names};
+use meshmark::{Files, Model, Surface, Suspect, file_names};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
@@ -16,6 +18,13 @@ const EVIDENCE: &[u8] = b"MMEV";
 pub struct Opened {
     bytes: Vec<u8>,
     files: Files,
+    wrapping: Wrapping,
+}
+
+/// What is to be checked, as it was found on disk.
+pub enum Found {
+    Model(Opened),
+    Surface(Triangles),
 }
 
 impl Opened {
@@ -26,6 +35,13 @@ impl Opened {
             .with_progress(clock)
     }
 
+    /// A changed model in what this one came wrapped in.
+    pub fn wrapped(&self, path: &Path, model: &[u8]) -> Result<Vec<u8>, Failure> {
+        self.wrapping
+            .wrap(model)
+            .map_err(|error| Failure::file(path, error))
+    }
+
     /// The mesh, as it is seen by whoever checks the model.
     pub fn mesh(&self) -> Result<Mesh, Failure> {
         let document = Document::read(&self.bytes, &self.files).map_err(Failure::of)?;
@@ -34,17 +50,53 @@ impl Opened {
     }
 }
 
+impl Found {
+    /// To look at, watched by a clock.
+    pub fn suspect<'a>(&'a self, clock: &'a mut Clock) -> Suspect<'a> {
+        match self {
+            Found::Model(model) => model.model(clock).into(),
+            Found::Surface(Triangles {
+                positions,
+                triangles,
+            }) => Surface::new(positions, triangles)
+                .with_progress(clock)
+                .into(),
+        }
+    }
+}
+
 /// A model and the external buffers that it names, which are looked for beside it.
 pub fn open(path: &Path) -> Result<Opened, Failure> {
-    let model = load(path)?;
-    if model.starts_with(EVIDENCE) {
+    match find(path)? {
+        (Format::Gltf, bytes, wrapping) => with_files(path, bytes, wrapping),
+        (format, ..) => Err(format.refused(path)),
+    }
+}
+
+/// What is to be checked: glTF, or a surface in another format.
+pub fn open_suspect(path: &Path) -> Result<Found, Failure> {
+    let (format, bytes, wrapping) = find(path)?;
+    Ok(match format {
+        Format::Gltf => Found::Model(with_files(path, bytes, wrapping)?),
+        format => Found::Surface(Triangles::read(path, format, &bytes)?),
+    })
+}
+
+/// A file's kind, its content, and what that was wrapped in.
+fn find(path: &Path) -> Result<(Format, Vec<u8>, Wrapping), Failure> {
+    let (bytes, wrapping) = unwrap(path, load(path)?)?;
+    if bytes.starts_with(EVIDENCE) {
         return Err(Failure::NotAsked(path.to_owned()));
     }
+    Ok((recognize(path, &bytes)?, bytes, wrapping))
+}
+
+fn with_files(path: &Path, model: Vec<u8>, wrapping: Wrapping) -> Result<Opened, Failure> {
     let mut files = Files::new();
     let mut known = BTreeSet::new();
     // A model that cannot be read names no files; whoever reads it next says what is wrong.
     for uri in file_names(&model).unwrap_or_default() {
-        let buffer = sibling(path, &uri)?;
+        let buffer = inside(path, &uri)?;
         // A small model could have a large file loaded as often as it finds another name for it.
         if let Ok(place) = buffer.canonicalize()
             && !known.insert(place)
@@ -57,39 +109,18 @@ pub fn open(path: &Path) -> Result<Opened, Failure> {
     Ok(Opened {
         bytes: model,
         files,
+        wrapping,
     })
 }
 
 /// A file beside another. A model's URIs are a stranger's words: they may not lead out of its folder.
-fn sibling(path: &Path, name: &str) -> Result<PathBuf, Failure> {
-    let inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
-    if !Path::new(name).components().all(inside) {
+pub fn inside(path: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
+    if !Path::new(name).components().all(is_inside) {
         let words = format!("{name:?} lies outside of the model's folder");
         return Err(Failure::Words(words));
     }
     Ok(path.parent().unwrap_or(Path::new("")).join(name))
-}
-
-/// Writes a changed model and its changed buffers, but never over the buffers of the input.
-pub fn store_all(input: &Path, output: &Path, model: &[u8], files: &Files) -> Result<(), Failure> {
-    let mut outputs = vec![(output.to_owned(), model)];
-    for (name, bytes) in files {
-        let buffer = sibling(output, name)?;
-        if same_file(&buffer, &sibling(input, name)?) {
-            let path = buffer.display();
-            let words =
-                format!("{path} would be overwritten: write the marked model to another folder");
-            return Err(Failure::Words(words));
-        }
-        outputs.push((buffer, bytes));
-    }
-    outputs
-        .iter()
-        .try_for_each(|(path, bytes)| store(path, bytes))
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 pub fn load(path: &Path) -> Result<Vec<u8>, Failure> {

@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{open, store};
+use crate::file::{open_suspect, store};
 use crate::report::Report;
 use clap::Args;
 use meshmark::measure;
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Measure a model without a key; the evidence can be tested later, elsewhere
 #[derive(Args)]
 pub struct Measure {
-    /// .glb or .gltf
+    /// glTF (.glb, .gltf, .vrm, .b3dm), .obj, .stl or .ply, or one of them as .gz
     input: PathBuf,
     /// Where the evidence goes
     evidence: PathBuf,
@@ -21,7 +21,7 @@ pub struct Measure {
 impl Measure {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
-        let bytes = measure(open(&self.input)?.model(&mut clock))?.to_bytes();
+        let bytes = measure(open_suspect(&self.input)?.suspect(&mut clock))?.to_bytes();
         store(&self.evidence, &bytes)?;
         Report::done(&json!({ "bytes": bytes.len() }), clock)
     }

@@ -2,7 +2,8 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{open, store_all};
+use crate::file::open;
+use crate::output::Output;
 use crate::owner::Owner;
 use crate::report::Report;
 use clap::Subcommand;
@@ -13,12 +14,12 @@ use std::path::PathBuf;
 pub enum Note {
     /// Write a text and read it back
     Embed {
-        /// The model: .glb, or .gltf with its buffers beside it
+        /// The model: .glb, .vrm, .b3dm, or .gltf with its buffers beside it; or one of them as .gz
         input: PathBuf,
         /// 1 to 29 bytes of UTF-8; fewer in models of less than 8192 vertices
         #[arg(long)]
         text: String,
-        /// Where the model with the note goes; changed buffers of a .gltf go beside it
+        /// Where the model with the note goes: a file, or a folder. What a .gltf names goes beside it
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         #[command(flatten)]
@@ -44,9 +45,10 @@ impl Note {
                 owner,
             } => {
                 let key = owner.key()?;
-                let noted = embed_note(open(&input)?.model(&mut clock), &text, &key)?;
-                store_all(&input, &output, &noted.model, &noted.files)?;
-                Report::done(&noted.report, clock)
+                let host = open(&input)?;
+                let noted = embed_note(host.model(&mut clock), &text, &key)?;
+                let stored = Output::to(output).store(&input, &host, &noted.model, &noted.files)?;
+                Report::stored(&noted.report, &stored, clock)
             }
             Note::Read { input, owner } => {
                 let key = owner.key()?;

@@ -3,6 +3,7 @@
 use crate::clock::Clock;
 use crate::exit::{self, CANNOT_CHECK, FOUND, FRAGILE, NOT_FOUND};
 use crate::failure::Failure;
+use crate::output::Stored;
 use meshmark::Verdict;
 use serde::Serialize;
 use serde_json::Value;
@@ -28,6 +29,19 @@ impl Report {
     pub fn with_fragile(self, is_fragile: bool) -> Report {
         let code = if is_fragile { FRAGILE } else { self.code };
         Report { code, ..self }
+    }
+
+    /// What was done to a model, and which files it became.
+    pub fn stored(
+        report: &impl Serialize,
+        stored: &Stored,
+        clock: Clock,
+    ) -> Result<Report, Failure> {
+        let mut done = Report::done(report, clock)?;
+        if let Value::Object(fields) = &mut done.json {
+            fields.insert("stored".to_owned(), serde_json::to_value(stored)?);
+        }
+        Ok(done)
     }
 
     /// What was read, with an exit code that says whether anything was found.

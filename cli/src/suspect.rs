@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{load, open};
+use crate::file::{load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{Evidence, Extraction, Input, Key, Payload, detect, extract, measure, verify};
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// What is read.
 #[derive(Args)]
 pub struct Suspect {
-    /// .glb or .gltf
+    /// glTF (.glb, .gltf, .vrm, .b3dm), .obj, .stl or .ply, or one of them as .gz
     input: PathBuf,
     /// INPUT is no model but a file that `measure` wrote: only where you trust who wrote it
     #[arg(long)]
@@ -27,7 +27,11 @@ impl Suspect {
         clock: &mut Clock,
     ) -> Result<Extraction, Failure> {
         if !self.evidence {
-            return Ok(detect(open(&self.input)?.model(clock), key, expected)?);
+            return Ok(detect(
+                open_suspect(&self.input)?.suspect(clock),
+                key,
+                expected,
+            )?);
         }
         let evidence = self.stored()?;
         clock.start("test");
@@ -42,7 +46,7 @@ impl Suspect {
         if self.evidence {
             return Ok((self.stored()?, Input::Evidence));
         }
-        let evidence = measure(open(&self.input)?.model(clock))?;
+        let evidence = measure(open_suspect(&self.input)?.suspect(clock))?;
         Ok((evidence, Input::Model))
     }
 

@@ -298,6 +298,117 @@ fn cli_never_overwrites_the_host_nor_leaves_its_folder() {
     assert!(said.contains("outside"), "{said}");
 }
 
+/// The demo model as a .gltf whose positions and indices are in files of their own, with textures, one of them not there, and one
+/// outside of the folder.
+fn write_gltf_of_many_files(here: &Folder) {
+    let glb = meshmark::demo_model();
+    let json_length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut json: Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
+    let binary = &glb[20 + json_length + 8..];
+    let views = json["bufferViews"].as_array().unwrap().clone();
+    let names = ["buf/positions.bin", "buf/normals.bin", "in dices.bin"];
+    fs::create_dir_all(here.path("in/buf")).unwrap();
+    let mut buffers = Vec::new();
+    for (index, (view, name)) in views.iter().zip(names).enumerate() {
+        let length = view["byteLength"].as_u64().unwrap() as usize;
+        let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
+        fs::write(here.path("in").join(name), &binary[start..start + length]).unwrap();
+        buffers.push(json!({ "byteLength": length, "uri": name.replace(' ', "%20") }));
+        json["bufferViews"][index]["buffer"] = json!(index);
+        json["bufferViews"][index]["byteOffset"] = json!(0);
+    }
+    json["buffers"] = json!(buffers);
+    json["images"] = json!([
+        { "uri": "textures/a%23b.png" },
+        { "uri": "lost.png" },
+        { "uri": "../outside.png" },
+        { "uri": "https://example.org/far.png" },
+        { "uri": "data:image/png;base64,AAAA" },
+    ]);
+    fs::create_dir_all(here.path("in/textures")).unwrap();
+    fs::write(here.path("in/textures/a#b.png"), "picture").unwrap();
+    fs::write(here.path("outside.png"), "picture").unwrap();
+    fs::write(here.path("in/model.gltf"), json.to_string()).unwrap();
+}
+
+#[test]
+fn cli_writes_all_that_a_gltf_names() {
+    let here = Folder::new("complete");
+    write_gltf_of_many_files(&here);
+    let (code, report, said) = here.run(&format!("embed in/model.gltf out/ {ADA} --tag A"));
+    assert_eq!(code, 0, "{report} {said}");
+    let names = [
+        "buf/normals.bin",
+        "buf/positions.bin",
+        "in dices.bin",
+        "textures/a#b.png",
+    ];
+    let written: Vec<&str> = ["model.gltf"].into_iter().chain(names).collect();
+    assert_eq!(report["stored"]["written"], json!(written));
+    assert_eq!(
+        report["stored"]["missing"],
+        json!(["../outside.png", "lost.png"])
+    );
+    for name in names {
+        let [host, marked] =
+            ["in", "out"].map(|folder| fs::read(here.path(folder).join(name)).unwrap());
+        assert_eq!(host == marked, name != "buf/positions.bin", "{name}");
+    }
+    let (code, ..) = here.run(&format!("extract out/model.gltf {ADA}"));
+    assert_eq!(code, 0);
+    let (code, ..) = here.run(&format!(
+        "note embed in/model.gltf -o noted/n.gltf {ADA} --text hello"
+    ));
+    assert_eq!(code, 0);
+    assert!(here.path("noted/textures/a#b.png").exists());
+}
+
+#[test]
+fn cli_leaves_no_half_model() {
+    let here = Folder::new("half");
+    write_gltf_of_many_files(&here);
+    // A folder stands where a buffer has to go.
+    fs::create_dir_all(here.path("out/buf/positions.bin/x")).unwrap();
+    fs::write(here.path("out/in dices.bin"), "before").unwrap();
+    let (code, ..) = here.run(&format!("embed in/model.gltf out/ {ADA} --tag A"));
+    assert_eq!(code, 2);
+    let left = |folder: &str| {
+        let mut names: Vec<String> = fs::read_dir(here.path(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    assert_eq!(left("out"), ["buf", "in dices.bin"]);
+    assert_eq!(left("out/buf"), ["positions.bin"]);
+    assert_eq!(fs::read(here.path("out/in dices.bin")).unwrap(), b"before");
+    // A file stands where a folder has to go.
+    fs::write(here.path("file"), "").unwrap();
+    let (code, ..) = here.run(&format!(
+        "embed in/model.gltf file/deep/model.gltf {ADA} --tag A"
+    ));
+    assert_eq!(code, 2);
+}
+
+#[test]
+fn cli_writes_over_the_input_only_when_asked() {
+    let here = Folder::new("in-place");
+    write_gltf_of_many_files(&here);
+    let (code, _, said) = here.run(&format!("embed in/model.gltf in {ADA} --tag A"));
+    assert_eq!(code, 2);
+    assert!(said.contains("--in-place"), "{said}");
+    let (code, _, said) = here.run(&format!("embed model.glb model.glb {ADA} --tag A"));
+    assert_eq!(code, 2);
+    assert!(said.contains("--in-place"), "{said}");
+    let (code, ..) = here.run(&format!("extract in/model.gltf {ADA}"));
+    assert_eq!(code, 1);
+    let (code, report, said) = here.run(&format!("embed in/model.gltf --in-place {ADA} --tag A"));
+    assert_eq!(code, 0, "{report} {said}");
+    let (code, ..) = here.run(&format!("extract in/model.gltf {ADA}"));
+    assert_eq!(code, 0);
+}
+
 #[test]
 fn cli_writes_and_reads_a_note() {
     let here = Folder::new("note");
@@ -450,4 +561,97 @@ fn cli_usage_errors_exit_with_2() {
         assert_eq!(code, 2, "{arguments}");
         assert!(said.contains("Usage"), "{said}");
     }
+}
+
+#[test]
+fn cli_reads_suspects_in_other_formats() {
+    let here = Folder::new("formats");
+    here.run(&format!("embed model.glb marked.glb {ADA} --tag ADA-1"));
+    let marked = fs::read(here.path("marked.glb")).unwrap();
+    let json_length = u32::from_le_bytes(marked[12..16].try_into().unwrap()) as usize;
+    let json: Value = serde_json::from_slice(&marked[20..20 + json_length]).unwrap();
+    let binary = &marked[20 + json_length + 8..];
+    let view = |index: usize| {
+        let view = &json["bufferViews"][index];
+        let number = |name: &str| view[name].as_u64().unwrap_or(0) as usize;
+        &binary[number("byteOffset")..][..number("byteLength")]
+    };
+    let numbers = |bytes: &[u8]| -> Vec<[u8; 4]> { bytes.as_chunks().0.to_vec() };
+    // Millimetres, Z up, in text of six digits.
+    let points: Vec<String> = numbers(view(0))
+        .chunks(3)
+        .map(|point| {
+            let [x, y, z] = [0, 1, 2].map(|axis| 1000.0 * f32::from_le_bytes(point[axis]));
+            format!("{x:.5e} {:.5e} {y:.5e}", -z)
+        })
+        .collect();
+    let triangles: Vec<[usize; 3]> = numbers(view(2))
+        .chunks(3)
+        .map(|corners| [0, 1, 2].map(|place| u32::from_le_bytes(corners[place]) as usize))
+        .collect();
+    let lines = |lines: Vec<String>| lines.join("\n");
+    let obj = format!(
+        "# by nobody\n{}\n{}\n",
+        lines(points.iter().map(|point| format!("v {point}")).collect()),
+        lines(
+            triangles
+                .iter()
+                .map(|[a, b, c]| format!("f {} {} {}", a + 1, b + 1, c + 1))
+                .collect()
+        ),
+    );
+    let facet = |[a, b, c]: &[usize; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| &points[*corner]);
+        format!(
+            "facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet"
+        )
+    };
+    let stl = format!(
+        "solid\n{}\nendsolid\n",
+        lines(triangles.iter().map(facet).collect())
+    );
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n{}\n{}\n",
+        points.len(),
+        triangles.len(),
+        lines(points.clone()),
+        lines(
+            triangles
+                .iter()
+                .map(|[a, b, c]| format!("3 {a} {b} {c}"))
+                .collect()
+        ),
+    );
+    for (name, bytes) in [("obj", obj), ("stl", stl), ("ply", ply)] {
+        // Names of files say little.
+        fs::write(here.path("copy"), bytes).unwrap();
+        let (code, report, said) = here.run(&format!("extract copy {ADA}"));
+        assert_eq!(
+            (code, &report["tag"]),
+            (0, &json!("ADA-1")),
+            "{name}: {said}"
+        );
+        let (code, ..) = here.run(&format!("verify copy {ADA} --tag ADA-1"));
+        assert_eq!(code, 0, "{name}");
+        here.run("measure copy copy.mmev");
+        let (code, ..) = here.run(&format!("extract copy.mmev --evidence {ADA}"));
+        assert_eq!(code, 0, "{name}");
+        let (code, report, said) = here.run(&format!("embed copy no.glb {ADA} --tag A"));
+        assert_eq!(
+            (code, &report["error"]["code"]),
+            (2, &json!("file.other-format"))
+        );
+        assert!(said.contains("glTF only"), "{said}");
+    }
+    fs::write(here.path("copy"), "Kaydara FBX Binary").unwrap();
+    let (code, _, said) = here.run(&format!("extract copy {ADA}"));
+    assert_eq!(code, 2);
+    assert!(said.contains("FBX"), "{said}");
+    fs::write(here.path("copy"), "v 0 0 0\nv 1 0 0\nf 1 2 3\n").unwrap();
+    let (code, report, _) = here.run(&format!("extract copy {ADA}"));
+    assert_eq!(
+        (code, &report["error"]["code"]),
+        (2, &json!("file.damaged"))
+    );
 }

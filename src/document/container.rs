@@ -25,6 +25,8 @@ pub(super) struct Parts {
     pub binary: Option<Vec<u8>>,
     /// The GLB chunks that glTF 2.0 does not define, headers included.
     pub rest: Vec<u8>,
+    /// The bytes after the end that the GLB header states: no part of the document.
+    pub tail: Vec<u8>,
 }
 
 /// Takes a model file apart. A file that starts with the GLB magic number is GLB, any other is JSON.
@@ -41,6 +43,7 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
             text: utf8(model)?,
             binary: None,
             rest: Vec::new(),
+            tail: Vec::new(),
         });
     }
     let (header, body) = model
@@ -56,14 +59,10 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
     if u64::from(stated) > model.len() as u64 {
         return Err(truncated("the GLB file", u64::from(stated), model.len()));
     }
-    if u64::from(stated) < model.len() as u64 {
-        return Err(DocumentError::BadContainer {
-            detail: format!(
-                "its header states {stated} bytes, but the file has {}",
-                model.len()
-            ),
-        });
-    }
+    let length = usize::try_from(stated)
+        .unwrap_or(model.len())
+        .saturating_sub(HEADER_BYTES);
+    let (body, tail) = body.split_at_checked(length).unwrap_or((body, &[]));
 
     let [kind, json, mut body] = chunk(body)?;
     if kind != JSON {
@@ -88,6 +87,7 @@ pub(super) fn split(model: &[u8]) -> Result<Parts, DocumentError> {
         text: utf8(json)?,
         binary,
         rest: body.to_vec(),
+        tail: tail.to_vec(),
     })
 }
 
@@ -101,6 +101,7 @@ pub(super) fn join(
     text: &str,
     binary: Option<&[u8]>,
     rest: &[u8],
+    tail: &[u8],
 ) -> Result<Vec<u8>, DocumentError> {
     let mut file = Vec::new();
     if container == Container::Gltf {
@@ -134,6 +135,7 @@ pub(super) fn join(
         file.extend_from_slice(data);
     }
     file.extend_from_slice(rest);
+    file.extend_from_slice(tail);
     Ok(file)
 }
 

@@ -75,7 +75,7 @@ pub enum DocumentError {
         /// What is wrong.
         detail: String,
     },
-    /// A position that is infinite or not a number.
+    /// A position that is infinite or not a number, of a vertex that a triangle uses or as a new position.
     #[error("vertex {element} has a position that is not a finite number: repair the mesh first")]
     NonFinitePosition {
         /// The accessor.
@@ -93,9 +93,10 @@ pub enum DocumentError {
         /// The number of vertices.
         count: usize,
     },
-    /// The largest value of an index type, which glTF 2.0 reserves for primitive restart and forbids.
+    /// The largest value of an index type, which glTF 2.0 reserves for primitive restart and forbids: in a strip or a fan, or in a list
+    /// without such a vertex.
     #[error(
-        "the triangle list contains the reserved value {value} (primitive restart), which glTF 2.0 forbids"
+        "the triangles contain the reserved value {value} (primitive restart), which glTF 2.0 forbids"
     )]
     PrimitiveRestart {
         /// The primitive's indices.
@@ -111,24 +112,6 @@ pub enum DocumentError {
         /// The first such node.
         pointer: String,
         /// Its index.
-        node: usize,
-    },
-    /// A node that is listed as a child more than once.
-    #[error("node {node} has more than one parent, which glTF forbids")]
-    SharedNode {
-        /// The second reference to the node.
-        pointer: String,
-        /// The node's index.
-        node: usize,
-    },
-    /// A scene that lists a node which has a parent.
-    #[error(
-        "the scene lists node {node}, which is the child of another node; glTF allows root nodes only"
-    )]
-    NotARoot {
-        /// The reference in the scene.
-        pointer: String,
-        /// The node's index.
         node: usize,
     },
     /// A required extension that is not known to leave positions alone.
@@ -232,8 +215,6 @@ impl DocumentError {
             Self::BadVertex { .. } => "document.bad-vertex",
             Self::PrimitiveRestart { .. } => "document.primitive-restart",
             Self::CyclicNodes { .. } => "document.cyclic-nodes",
-            Self::SharedNode { .. } => "document.shared-node",
-            Self::NotARoot { .. } => "document.not-a-root",
             Self::ExtensionUnsupported { .. } => "document.extension-unsupported",
             Self::CompressionUnsupported { .. } => "document.compression-unsupported",
             Self::MissingFile { .. } => "document.missing-file",
@@ -261,8 +242,6 @@ impl DocumentError {
             | Self::BadVertex { pointer, .. }
             | Self::PrimitiveRestart { pointer, .. }
             | Self::CyclicNodes { pointer, .. }
-            | Self::SharedNode { pointer, .. }
-            | Self::NotARoot { pointer, .. }
             | Self::ExtensionUnsupported { pointer, .. }
             | Self::CompressionUnsupported { pointer, .. }
             | Self::MissingFile { pointer, .. }

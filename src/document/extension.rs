@@ -16,42 +16,69 @@ const COMPRESSION: &[&str] = &[
     "MESHOPT_compression",
 ];
 
-/// Required extensions that are accepted, with the reason.
+/// How the names of required extensions begin that are accepted, with the reason. What is not here may change the geometry: morphing
+/// by features, splats, voxels, implicit surfaces, primitive restart, timed or wider numbers.
 const ACCEPTED: &[&str] = &[
-    // Read here: integer positions.
+    // Read here: integer positions, and copies of a mesh.
     "KHR_mesh_quantization",
-    // Places copies of a mesh; its accessors are kept from being changed.
     "EXT_mesh_gpu_instancing",
-    // Lights, animation targets, visibility, metadata: no vertex data.
-    "EXT_instance_features",
-    "EXT_lights_ies",
-    "EXT_lights_image_based",
-    "EXT_mesh_features",
-    "EXT_structural_metadata",
+    // How a surface looks: it shades, and never moves.
+    "ADOBE_materials_",
+    "EXT_materials_",
+    "KHR_materials_",
+    "KHR_techniques_webgl",
+    "NV_materials_",
+    "VRMC_materials_",
+    // Image formats, and where images lie on the surface.
+    "ASOBO_normal_map_convention",
+    "EXT_texture_",
+    "KHR_texture_",
+    "MSFT_packing_",
+    "MSFT_texture_",
+    // Lights and surroundings.
+    "EXT_lights_",
+    "KHR_environment_map",
+    "KHR_lights_",
+    // Sounds.
+    "KHR_audio",
+    "MSFT_audio_emitter",
+    // Bodies that collide: shapes of their own, beside the meshes.
+    "KHR_collision_shapes",
+    "KHR_implicit_shapes",
+    "KHR_physics_rigid_bodies",
+    "KHR_rigid_bodies",
+    // What can be done with the scene, and what can happen in it: no geometry is made.
+    "AGI_articulations",
     "KHR_animation_pointer",
-    "KHR_lights_punctual",
-    "KHR_node_hoverability",
-    "KHR_node_selectability",
-    "KHR_node_visibility",
+    "KHR_interactivity",
+    "KHR_node_",
+    // Names and numbers for vertices, meshes and files; lines to draw along edges; other lists of the same triangles.
+    "AGI_stk_metadata",
+    "CESIUM_primitive_outline",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_mesh_primitive_edge_visibility",
+    "EXT_structural_metadata",
+    "FB_geometry_metadata",
+    "FB_ngon_encoding",
+    "GODOT_single_root",
     "KHR_xmp",
-    "KHR_xmp_json_ld",
-    // Image formats and texture coordinates.
-    "EXT_texture_avif",
-    "EXT_texture_webp",
-    "KHR_texture_basisu",
-    "KHR_texture_transform",
-    "MSFT_texture_dds",
+    // Levels of detail: each is a mesh of the file.
+    "MSFT_lod",
+    // Who a figure is and how it moves: bones, springs, expressions, seats, names.
+    "OMI_",
+    "VRM",
+    // Where on the globe the whole lies.
+    "CESIUM_RTC",
 ];
-
-/// Materials shade a surface and never move it.
-const ACCEPTED_PREFIX: &str = "KHR_materials_";
 
 /// Refuses compressed geometry and required extensions that are not known to be harmless.
 pub(super) fn check(root: &Root) -> Result<(), DocumentError> {
     for (index, name) in root.extensions_required.iter().enumerate() {
         let pointer = format_args!("/extensionsRequired/{index}");
         refuse_compression(name, pointer)?;
-        if !ACCEPTED.contains(&name.as_str()) && !name.starts_with(ACCEPTED_PREFIX) {
+        if !ACCEPTED.iter().any(|accepted| name.starts_with(accepted)) {
             return Err(DocumentError::ExtensionUnsupported {
                 pointer: pointer.to_string(),
                 name: name.clone(),

@@ -73,9 +73,9 @@ impl<'a, 'p> Object<'a, 'p> {
         self.members.get(name).copied()
     }
 
-    /// A member that may be absent.
+    /// A member that may be absent. `null`, which no member of glTF may be, is what some exporters write for what is not there.
     pub fn optional<T: FromJson<'a>>(&self, name: &str) -> Result<Option<T>, DocumentError> {
-        match self.member(name) {
+        match self.member(name).filter(|raw| raw.get() != "null") {
             Some(raw) => Ok(Some(T::from_json(raw, Place::Field(&self.place, name))?)),
             None => Ok(None),
         }

@@ -208,7 +208,10 @@ pub(super) fn triangles(
         return Ok(Vec::new());
     };
     let corners = match primitive.indices.and_then(|index| accessors.get(index)) {
-        Some(indices) => indexed_corners(indices, position.count, storages, pointer)?,
+        Some(indices) => {
+            let is_list = primitive.mode == Mode::Triangles;
+            indexed_corners(indices, position.count, is_list, storages, pointer)?
+        }
         None => {
             let count = u32::try_from(position.count).map_err(|_| DocumentError::TooLarge {
                 what: "the number of vertices",
@@ -222,9 +225,12 @@ pub(super) fn triangles(
     Ok(assemble(primitive.mode, &corners))
 }
 
+/// The vertices that indices name. The largest value of their type ends a strip in some renderers, so glTF forbids it; older exporters
+/// wrote it into lists, where every loader takes it for the vertex that it is.
 fn indexed_corners(
     indices: &Accessor,
     count: usize,
+    is_list: bool,
     storages: &[Storage],
     pointer: &str,
 ) -> Result<Vec<u32>, DocumentError> {
@@ -240,13 +246,14 @@ fn indexed_corners(
         let vertex = bytes
             .and_then(|bytes| unsigned(component, bytes))
             .unwrap_or(0);
-        if vertex == restart {
+        let is_vertex = u64::from(vertex) < count as u64;
+        if vertex == restart && !(is_list && is_vertex) {
             return Err(DocumentError::PrimitiveRestart {
                 pointer: pointer(),
                 value: vertex,
             });
         }
-        if u64::from(vertex) >= count as u64 {
+        if !is_vertex {
             return Err(DocumentError::BadVertex {
                 pointer: pointer(),
                 vertex,

@@ -31,13 +31,16 @@ mod container;
 mod data_uri;
 mod error;
 mod extension;
+mod instances;
 mod json;
+mod links;
 mod mesh;
 mod node;
 mod region;
 mod schema;
 mod sharing;
 mod splice;
+mod tree;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -97,6 +100,8 @@ pub struct Document {
     meshes: Vec<Mesh>,
     nodes: Vec<Node>,
     roots: Vec<usize>,
+    num_stated_nodes: usize,
+    tail: Vec<u8>,
 }
 
 impl Document {
@@ -118,7 +123,8 @@ impl Document {
         let views = region::views(&root, &buffers)?;
         let accessors = accessor::read(&root, &text, &views)?;
         let meshes = mesh::read(&root, &accessors)?;
-        let (nodes, roots) = node::read(&root)?;
+        let (nodes, roots) = tree::read(&root, &accessors, &storages)?;
+        let num_stated_nodes = root.nodes.len();
         check_references(&root, &accessors, &views)?;
         let sharing = Sharing::new(&root, &accessors, &views)?;
         let is_sparse_position = |accessor: &&Accessor| {
@@ -139,6 +145,8 @@ impl Document {
             meshes,
             nodes,
             roots,
+            num_stated_nodes,
+            tail: parts.tail,
         })
     }
 
@@ -152,6 +160,16 @@ impl Document {
         let root = Root::parse(&parts.text)?;
         extension::check(&root)?;
         buffer::file_names(&root)
+    }
+
+    /// The files beside it that a model file names, percent-decoded, each once: buffers, images, sounds, what extensions name. What a
+    /// complete copy of the model consists of, beside the model file.
+    ///
+    /// # Errors
+    ///
+    /// [`DocumentError`] of a container or a text that cannot be read.
+    pub fn linked_files(model: &[u8]) -> Result<Vec<String>, DocumentError> {
+        links::relative(&container::split(model)?.text)
     }
 
     /// Writes the document: byte for byte what was read, except for positions that are not what
@@ -195,7 +213,7 @@ impl Document {
         if self.container == Container::Glb && text.len() != self.text.len() {
             container::pad(&mut text);
         }
-        let model = container::join(self.container, &text, binary, &self.rest)?;
+        let model = container::join(self.container, &text, binary, &self.rest, &self.tail)?;
         Ok(Written { model, files })
     }
 
@@ -214,9 +232,15 @@ impl Document {
         &self.meshes
     }
 
-    /// The nodes. They form trees: none has two parents, none is its own descendant.
+    /// The nodes: those of the file in its order, then instances, then a copy for every further way that a node is shown. They form
+    /// trees: none has two parents, none is its own descendant.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// How many nodes the file states.
+    pub fn num_stated_nodes(&self) -> usize {
+        self.num_stated_nodes
     }
 
     /// The root nodes of all scenes, each once, in ascending order; all nodes without a parent if
@@ -226,17 +250,14 @@ impl Document {
     }
 
     /// The positions of an accessor, dequantized, with sparse values in place: one per element, in
-    /// the units of the file.
+    /// the units of the file. Those that are no finite numbers are given too: it depends on their use whether they matter.
     ///
     /// # Errors
     ///
-    /// [`DocumentError::NotPositions`] if no primitive uses the accessor as `POSITION`, and
-    /// [`DocumentError::NonFinitePosition`].
+    /// [`DocumentError::NotPositions`] if no primitive uses the accessor as `POSITION`.
     pub fn positions(&self, accessor: usize) -> Result<Vec<[f64; 3]>, DocumentError> {
         let accessor = self.position_accessor(accessor)?;
-        accessor.each(&self.storages, |element, slot| {
-            self.position(accessor, element, slot)
-        })
+        accessor.each(&self.storages, |_, slot| Ok(self.position(accessor, slot)))
     }
 
     /// The number of elements of a position accessor; nothing is read for it.
@@ -339,7 +360,7 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// [`DocumentError::WrongLength`], [`DocumentError::NonFinitePosition`] and
+    /// [`DocumentError::WrongLength`], [`DocumentError::NonFinitePosition`] for a new position, and
     /// [`DocumentError::FixedElement`] for a [fixed element](Self::fixed_elements) that would change,
     /// as well as the errors of [`positions`](Self::positions). Nothing is stored then.
     pub fn set_positions(
@@ -364,13 +385,16 @@ impl Document {
             .zip(slots.into_iter().zip(fixed))
             .enumerate()
         {
+            let stored = self.position(accessor, slot);
+            if position.map(f64::to_bits) == stored.map(f64::to_bits) {
+                continue;
+            }
             if !position.iter().all(|component| component.is_finite()) {
                 return Err(DocumentError::NonFinitePosition {
                     pointer: accessor.pointer(),
                     element,
                 });
             }
-            let stored = self.position(accessor, element, slot)?;
             let nearest = position.map(|component| format.nearest(component));
             if nearest == stored {
                 continue;
@@ -416,23 +440,10 @@ impl Document {
         })
     }
 
-    fn position(
-        &self,
-        accessor: &Accessor,
-        element: usize,
-        slot: Option<Slot>,
-    ) -> Result<[f64; 3], DocumentError> {
-        let raw = match slot {
-            Some(slot) => accessor.format.raw_position(&self.storages, slot),
-            None => Some([0.0; 3]),
-        };
-        let position = raw.map(|raw| raw.map(|component| accessor.format.normalize(component)));
-        position
-            .filter(|position| position.iter().all(|component| component.is_finite()))
-            .ok_or_else(|| DocumentError::NonFinitePosition {
-                pointer: accessor.pointer(),
-                element,
-            })
+    fn position(&self, accessor: &Accessor, slot: Option<Slot>) -> [f64; 3] {
+        let raw = slot.and_then(|slot| accessor.format.raw_position(&self.storages, slot));
+        raw.unwrap_or_default()
+            .map(|component| accessor.format.normalize(component))
     }
 }
 

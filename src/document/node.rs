@@ -1,4 +1,6 @@
-//! Nodes, and the tree they form (glTF 2.0 specification section 3.5).
+//! Nodes (glTF 2.0 specification section 3.5).
+
+use std::collections::BTreeSet;
 
 use super::schema::{self, Root};
 use super::{DocumentError, item};
@@ -32,55 +34,41 @@ pub enum Transform {
     },
 }
 
-/// The nodes of the file, and its root nodes: those of all scenes in ascending order, or all nodes
-/// without a parent if there is no scene.
-pub(super) fn read(root: &Root) -> Result<(Vec<Node>, Vec<usize>), DocumentError> {
-    let nodes = root.nodes.iter().enumerate();
-    let nodes: Vec<Node> = nodes
-        .map(|(index, node)| read_node(root, index, node))
-        .collect::<Result<_, _>>()?;
-    let orphans = parentless(&nodes)?;
-    check_acyclic(&nodes, &orphans)?;
-
-    let mut is_root = vec![false; nodes.len()];
-    for (index, scene) in root.scenes.iter().enumerate() {
-        for (place, &node) in scene.nodes.iter().enumerate() {
-            let pointer = format_args!("/scenes/{index}/nodes/{place}");
-            let (node, _) = item(&nodes, node, "nodes", pointer)?;
-            if orphans.binary_search(&node).is_err() {
-                return Err(DocumentError::NotARoot {
-                    pointer: pointer.to_string(),
-                    node,
-                });
-            }
-            is_root
-                .get_mut(node)
-                .into_iter()
-                .for_each(|flag| *flag = true);
-        }
-    }
-    let roots = if root.scenes.is_empty() {
-        orphans
-    } else {
-        places(&is_root, true)
+impl Transform {
+    /// What leaves everything where it is.
+    pub(super) const NONE: Self = Self::Decomposed {
+        translation: [0.0; 3],
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        scale: [1.0; 3],
     };
-    Ok((nodes, roots))
+
+    /// Whether it leaves everything where it is.
+    pub(super) fn is_none(&self) -> bool {
+        const IDENTITY: [f64; 16] = [
+            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+        ];
+        *self == Self::NONE || *self == Self::Matrix(IDENTITY)
+    }
 }
 
-/// Where a list of flags has this value.
-fn places(flags: &[bool], value: bool) -> Vec<usize> {
-    let flags = flags.iter().enumerate();
-    flags
-        .filter_map(|(place, flag)| (*flag == value).then_some(place))
+/// The nodes as the file states them: several may list the same.
+pub(super) fn stated(root: &Root) -> Result<Vec<Node>, DocumentError> {
+    let nodes = root.nodes.iter().enumerate();
+    nodes
+        .map(|(index, node)| read_node(root, index, node))
         .collect()
 }
 
 fn read_node(root: &Root, index: usize, node: &schema::Node) -> Result<Node, DocumentError> {
-    let children = node.children.iter().enumerate().map(|(place, &child)| {
+    let mut children = Vec::with_capacity(node.children.len());
+    let mut known = BTreeSet::new();
+    for (place, &child) in node.children.iter().enumerate() {
         let pointer = format_args!("/nodes/{index}/children/{place}");
-        Ok(item(&root.nodes, child, "nodes", pointer)?.0)
-    });
-    let children = children.collect::<Result<_, DocumentError>>()?;
+        let (child, _) = item(&root.nodes, child, "nodes", pointer)?;
+        if known.insert(child) {
+            children.push(child);
+        }
+    }
     let mesh = node.mesh.map(|mesh| {
         item(
             &root.meshes,
@@ -110,42 +98,4 @@ fn read_node(root: &Root, index: usize, node: &schema::Node) -> Result<Node, Doc
         mesh: mesh.transpose()?.map(|(mesh, _)| mesh),
         skin: skin.transpose()?.map(|(skin, _)| skin),
     })
-}
-
-/// The nodes without a parent, ascending. An error if a node has two.
-fn parentless(nodes: &[Node]) -> Result<Vec<usize>, DocumentError> {
-    let mut has_parent = vec![false; nodes.len()];
-    for (index, node) in nodes.iter().enumerate() {
-        for (place, &child) in node.children.iter().enumerate() {
-            let seen = has_parent
-                .get_mut(child)
-                .map(|flag| std::mem::replace(flag, true));
-            if seen == Some(true) {
-                return Err(DocumentError::SharedNode {
-                    pointer: format!("/nodes/{index}/children/{place}"),
-                    node: child,
-                });
-            }
-        }
-    }
-    Ok(places(&has_parent, false))
-}
-
-/// With at most one parent each, the nodes on loops and below them are those no root leads to.
-fn check_acyclic(nodes: &[Node], roots: &[usize]) -> Result<(), DocumentError> {
-    let mut reached = vec![false; nodes.len()];
-    let mut pending = roots.to_vec();
-    while let Some(index) = pending.pop() {
-        if let (Some(flag), Some(node)) = (reached.get_mut(index), nodes.get(index)) {
-            *flag = true;
-            pending.extend_from_slice(&node.children);
-        }
-    }
-    match reached.iter().position(|reached| !reached) {
-        Some(node) => Err(DocumentError::CyclicNodes {
-            pointer: format!("/nodes/{node}"),
-            node,
-        }),
-        None => Ok(()),
-    }
 }

@@ -17,7 +17,7 @@ use super::json::{FromJson, Object, Place, wrong};
 
 /// The most nodes. The shortest, `{},`, has 3 bytes and takes 530 of memory, with what is made of it: 530 MiB of address space
 /// natively, 130 MiB in a browser tab.
-const MAX_NODES: usize = if cfg!(target_pointer_width = "32") {
+pub(super) const MAX_NODES: usize = if cfg!(target_pointer_width = "32") {
     1 << 18
 } else {
     1 << 20

@@ -1,7 +1,7 @@
 //! Document -> Scene.
 
 use super::{Count, Placement, Scene, SceneError, inverse, orbits};
-use crate::document::{Document, Node, Primitive, Transform};
+use crate::document::{Document, DocumentError, Node, Primitive, Transform};
 use crate::geometry::{Seams, seams};
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
@@ -121,8 +121,10 @@ fn local_transform(node: &Node) -> DAffine3 {
 }
 
 /// Placements and triangles before welding. A corner is (placement, element).
-struct Gathering {
+pub(super) struct Gathering {
     placements: Vec<Placement>,
+    /// The node of each placement.
+    nodes: Vec<usize>,
     worlds: Vec<Vec<DVec3>>,
     triangles: Vec<(u32, [u32; 3])>,
 }
@@ -145,6 +147,7 @@ impl Gathering {
     fn with_room_for(count: &Count) -> Gathering {
         Gathering {
             placements: Vec::new(),
+            nodes: Vec::new(),
             worlds: Vec::new(),
             triangles: Vec::with_capacity(count.triangles as usize),
         }
@@ -194,9 +197,7 @@ impl Gathering {
             .into_iter()
             .map(|p| to_world.transform_point3(DVec3::from_array(p)))
             .collect();
-        if !worlds.iter().all(|world| world.is_finite()) {
-            return Err(SceneError::NotFinite { node: placed.node });
-        }
+        self.nodes.push(placed.node);
         self.placements.push(Placement {
             accessor,
             to_world,
@@ -207,7 +208,54 @@ impl Gathering {
         Ok(())
     }
 
-    fn weld(mut self, document: &Document) -> Result<Scene, SceneError> {
+    /// Whose fault it is that a corner is nowhere: the file's numbers', or the node's transform.
+    fn not_finite(&self, document: &Document, (placement, element): (u32, u32)) -> SceneError {
+        let (placement, element) = (placement as usize, element as usize);
+        let accessor = self
+            .placements
+            .get(placement)
+            .map(|placement| placement.accessor);
+        let locals = accessor.and_then(|accessor| document.positions(accessor).ok());
+        let is_finite = |local: &[f64; 3]| local.iter().all(|component| component.is_finite());
+        match (
+            accessor,
+            locals.and_then(|locals| locals.get(element).map(is_finite)),
+        ) {
+            (Some(accessor), Some(false)) => DocumentError::NonFinitePosition {
+                pointer: format!("/accessors/{accessor}"),
+                element,
+            }
+            .into(),
+            _ => SceneError::NotFinite {
+                node: self.nodes.get(placement).copied().unwrap_or_default(),
+            },
+        }
+    }
+
+    fn weld(self, document: &Document) -> Result<Scene, SceneError> {
+        let Joined {
+            mesh,
+            parts,
+            placements,
+        } = self.join(|gathering, corner| gathering.not_finite(document, corner))?;
+        let admissible = orbits::admissible(document, &placements, mesh.positions.len())?;
+        let mut scene = Scene {
+            mesh,
+            admissible,
+            parts,
+            placements,
+        };
+        if scene.parts.is_some() {
+            scene.mesh.positions = scene.positions_in(document)?;
+        }
+        Ok(scene)
+    }
+
+    /// Makes vertices of elements; `not_finite` says what is wrong where a corner is nowhere.
+    fn join(
+        mut self,
+        not_finite: impl Fn(&Gathering, (u32, u32)) -> SceneError,
+    ) -> Result<Joined, SceneError> {
         let corners = || {
             self.triangles
                 .iter()
@@ -237,6 +285,9 @@ impl Gathering {
         }
         // What is done with makes room: a scene at the limits has 2^24 elements.
         drop(used);
+        if let Some(&corner) = order.iter().find(|&&corner| !world(corner).is_finite()) {
+            return Err(not_finite(&self, corner));
+        }
         let places: Vec<[u64; 3]> = order.iter().map(|&corner| bits(world(corner))).collect();
         let place = |corner: u32| places.get(corner as usize);
         let mut first: Vec<u32> = vec![0; order.len()];
@@ -285,18 +336,56 @@ impl Gathering {
         if mesh.triangles.is_empty() {
             return Err(SceneError::NoTriangles);
         }
-        let admissible = orbits::admissible(document, &self.placements, mesh.positions.len())?;
-        let mut scene = Scene {
+        Ok(Joined {
             mesh,
-            admissible,
             parts,
             placements: self.placements,
-        };
-        if scene.parts.is_some() {
-            scene.mesh.positions = scene.positions_in(document)?;
-        }
-        Ok(scene)
+        })
     }
+
+    /// A surface that is no document's, in one placement.
+    pub(super) fn of_surface(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Gathering {
+        Gathering {
+            placements: vec![Placement {
+                accessor: 0,
+                to_world: DAffine3::IDENTITY,
+                to_local: None,
+                vertices: vec![None; positions.len()],
+            }],
+            nodes: Vec::new(),
+            worlds: vec![positions.iter().copied().map(DVec3::from_array).collect()],
+            triangles: triangles.iter().map(|&triangle| (0, triangle)).collect(),
+        }
+    }
+
+    /// The mesh of a surface: as a document with the same elements would have it.
+    pub(super) fn surface(self, positions: &[[f64; 3]]) -> Result<Mesh, SceneError> {
+        let joined = self.join(|_, (_, vertex)| SceneError::NotANumber { vertex })?;
+        let mut mesh = joined.mesh;
+        if joined.parts.is_some() {
+            let mut is_placed = vec![false; mesh.positions.len()];
+            let vertices = joined.placements.iter().flat_map(|placed| &placed.vertices);
+            for (vertex, position) in vertices.zip(positions) {
+                let Some(vertex) = vertex.map(|vertex| vertex as usize) else {
+                    continue;
+                };
+                if let (Some(place), Some(flag)) =
+                    (mesh.positions.get_mut(vertex), is_placed.get_mut(vertex))
+                    && !std::mem::replace(flag, true)
+                {
+                    *place = DVec3::from_array(*position);
+                }
+            }
+        }
+        Ok(mesh)
+    }
+}
+
+/// What elements are once they are joined.
+struct Joined {
+    mesh: Mesh,
+    parts: Option<Vec<u32>>,
+    placements: Vec<Placement>,
 }
 
 /// Makes one vertex of those that a person sees as one; gives back the triangles' parts as they were before, where there were any.

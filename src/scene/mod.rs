@@ -13,7 +13,9 @@ mod follow;
 mod gather;
 mod orbits;
 mod plain;
+mod room;
 mod scatter;
+mod surface;
 mod uses;
 
 pub use count::Count;
@@ -61,6 +63,38 @@ pub enum SceneError {
         /// Index of the node.
         node: usize,
     },
+    /// A triangle of a surface names a vertex that is not there.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {count}")]
+    NoVertex {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// The number of vertices.
+        count: usize,
+    },
+    /// A vertex of a surface that a triangle uses is not at a finite place.
+    #[error("vertex {vertex} has a position that is not a finite number: repair the mesh first")]
+    NotANumber {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// All positions are in bytes that have another use, or in none.
+    #[error(
+        "no vertex can be moved: the bytes of all positions have another use too (an attribute of another name, a morph target, an \
+         animation), or are not stored; export the model with positions of their own"
+    )]
+    NothingMovable,
+    /// The values that positions can take are too far apart for a mark. Told where no mark could be read back.
+    #[error(
+        "the numbers that the file keeps positions in are {percent:.2} % of the model's size apart, too coarse for a mark: 32-bit \
+         numbers far away from the origin are, and integers of few bits; move the model to the origin and keep its place in the \
+         translation of a node, or quantize with more bits"
+    )]
+    CoarseNumbers {
+        /// Their distance, in percent of the diagonal.
+        percent: f64,
+    },
     /// More than 2^24 triangles or vertices (2^22 in a browser tab), 2^20 parts (2^18 there), or 2^20 vertices that no bytes of the
     /// file stand behind; every instance counted.
     #[error(
@@ -85,6 +119,10 @@ impl SceneError {
             SceneError::Document(error) => error.code(),
             SceneError::NoTriangles => "scene.no-triangles",
             SceneError::NotFinite { .. } => "scene.not-finite",
+            SceneError::NoVertex { .. } => "scene.no-vertex",
+            SceneError::NotANumber { .. } => "scene.not-a-number",
+            SceneError::NothingMovable => "scene.nothing-movable",
+            SceneError::CoarseNumbers { .. } => "scene.coarse-numbers",
             SceneError::TooLarge { .. } => "scene.too-large",
         }
     }

@@ -6,9 +6,10 @@ use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold, is_of_the_model};
 use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
 use crate::bits::Payload;
 use crate::digest::sha256;
-use crate::document::Files;
+use crate::document::{Document, Files};
 use crate::geometry::{Bounds, Deformation, Distortion, diagonal};
 use crate::key::Key;
+use crate::scene::Scene;
 
 /// A marked model.
 #[derive(Clone, Debug)]
@@ -94,7 +95,7 @@ fn embed_in(
     })
 }
 
-/// A refusal, with what would help: that is tried.
+/// A refusal, with what would help: that is tried. Where the file's numbers are too coarse, they are the reason.
 fn advised(
     refusal: Error,
     model: &mut Model,
@@ -102,6 +103,11 @@ fn advised(
     key: &Key,
     options: &EmbedOptions,
 ) -> Result<Error, Error> {
+    let document = Document::read(model.bytes, model.files)?;
+    if let Some(coarse) = Scene::gather(&document)?.coarse(&document) {
+        return Ok(coarse.into());
+    }
+    drop(document);
     let (strong, all) = (Strength::STRONG, EmbedOptions::default());
     let is_weaker = options.strength.rms_rel() < strong.rms_rel();
     let is_without_some = options.carriers.len() < all.carriers.len();

@@ -2,27 +2,25 @@
 
 use super::error::Error;
 use super::judge::Judge;
-use super::model::Model;
 use super::report::{Extraction, Input};
+use super::suspect::Suspect;
 use crate::bits::Payload;
 use crate::carrier::Carrier;
-use crate::document::Document;
 use crate::evidence::Evidence;
 use crate::key::Key;
 use crate::progress::Stage;
-use crate::scene::Scene;
 
 /// Measures a suspect: everything that needs no key. What is measured once can be tested with as many keys as there are.
 ///
 /// # Errors
-/// Where the model cannot be read, or holds no triangles; [`Error::Cancelled`] where its progress was told to stop.
-pub fn measure<'a>(model: impl Into<Model<'a>>) -> Result<Evidence, Error> {
-    let mut model = model.into();
-    model.step(Stage::Read, 0.0)?;
-    let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
-    model.step(Stage::Measure, 0.0)?;
-    let evidence = Evidence::of_mesh(&scene.mesh);
-    model.step(Stage::Measure, 1.0)?;
+/// Where the suspect cannot be read, or holds no triangles; [`Error::Cancelled`] where its progress was told to stop.
+pub fn measure<'a>(suspect: impl Into<Suspect<'a>>) -> Result<Evidence, Error> {
+    let mut suspect = suspect.into();
+    suspect.step(Stage::Read, 0.0)?;
+    let mesh = suspect.mesh()?;
+    suspect.step(Stage::Measure, 0.0)?;
+    let evidence = Evidence::of_mesh(&mesh);
+    suspect.step(Stage::Measure, 1.0)?;
     Ok(evidence)
 }
 
@@ -65,19 +63,19 @@ fn read(evidence: &Evidence, key: &Key, judge: Judge) -> Extraction {
 /// # Errors
 /// As [`measure`].
 pub fn detect<'a>(
-    model: impl Into<Model<'a>>,
+    suspect: impl Into<Suspect<'a>>,
     key: &Key,
     expected: Option<Payload>,
 ) -> Result<Extraction, Error> {
-    let mut model = model.into();
-    model.step(Stage::Read, 0.0)?;
-    let mesh = Scene::gather(&Document::read(model.bytes, model.files)?)?.mesh;
-    model.step(Stage::Measure, 0.0)?;
+    let mut suspect = suspect.into();
+    suspect.step(Stage::Read, 0.0)?;
+    let mesh = suspect.mesh()?;
+    suspect.step(Stage::Measure, 0.0)?;
     let mut readings = Carrier::ALL.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
-        readings[carrier as usize] = carrier.read(&mesh, key, &mut model)?;
+        readings[carrier as usize] = carrier.read(&mesh, key, &mut suspect)?;
     }
     let conclusion = Judge::new(key, expected, Input::Model).conclude(&readings);
-    model.step(Stage::Test, 1.0)?;
+    suspect.step(Stage::Test, 1.0)?;
     Ok(conclusion)
 }

@@ -71,7 +71,7 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
             .iter()
             .map(|mesh| mesh.primitives.len())
             .sum(),
-        nodes: document.nodes().len(),
+        nodes: document.num_stated_nodes(),
         extensions_used: document.extensions_used().to_vec(),
         sha256: sha256(model.bytes),
     })

@@ -105,6 +105,7 @@ fn mark(
     model.step(Stage::Read, 0.0)?;
     let mut document = Document::read(model.bytes, model.files)?;
     let scene = Scene::gather(&document)?;
+    scene.check_movable()?;
     model.step(Stage::Embed, 0.0)?;
 
     let codeword = match payload {

@@ -12,6 +12,7 @@ mod model;
 mod note;
 mod options;
 mod report;
+mod suspect;
 
 pub use capacity::{Capacity, Holds, capacity};
 pub use embed::{Embedding, embed};
@@ -26,3 +27,4 @@ pub use options::{EmbedOptions, Strength};
 pub use report::{
     CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Verdict,
 };
+pub use suspect::{Surface, Suspect};

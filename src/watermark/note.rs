@@ -112,6 +112,7 @@ pub fn embed_note<'a>(
     model.step(Stage::Read, 0.0)?;
     let mut document = Document::read(model.bytes, model.files)?;
     let scene = Scene::gather(&document)?;
+    scene.check_movable()?;
     let room = room(&scene)?;
     if room < block {
         return Err(Error::Text(TextError::TooLong {

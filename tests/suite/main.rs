@@ -34,6 +34,7 @@ mod seams;
 mod smoothing;
 mod solid;
 mod support;
+mod suspects;
 mod text;
 mod watermark;
 mod wild;

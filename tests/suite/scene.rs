@@ -3,8 +3,7 @@
 use crate::support::fixtures::gallery;
 use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
-use meshmark::internals::document::Document;
-use meshmark::internals::document::MAX_UNBACKED;
+use meshmark::internals::document::{Document, Files, MAX_UNBACKED};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::scene::{
     Count, MAX_ELEMENTS, MAX_PARTS, MAX_TRIANGLES, Scene, SceneError, to_glb,
@@ -17,8 +16,12 @@ fn read(model: &Built) -> Document {
 
 /// A document of one triangle mesh, shown by the given nodes (JSON text behind `"mesh":0`).
 fn shown(points: &[[f64; 3]], indices: &[u32], nodes: &[&str]) -> Document {
+    shown_as(Layout::F32, points, indices, nodes)
+}
+
+fn shown_as(layout: Layout, points: &[[f64; 3]], indices: &[u32], nodes: &[&str]) -> Document {
     let mut builder = GltfBuilder::new(Packing::Glb);
-    let position = builder.positions(0, Layout::F32, points);
+    let position = builder.positions(0, layout, points);
     let indices = builder.indices(0, Component::U16, indices);
     let mesh = builder.mesh(&[primitive(position, Some(indices), 4)]);
     for node in nodes {
@@ -173,6 +176,194 @@ fn scene_degenerate_triangles_and_unused_vertices_are_no_part_of_it() {
         (scene.mesh.positions.len(), scene.mesh.triangles.len()),
         (3, 1)
     );
+}
+
+/// What is no number cannot be stated in JSON.
+const UNBOUNDED: Layout = Layout {
+    bounds: false,
+    ..Layout::F32
+};
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_numbers_that_are_none_matter_where_a_triangle_looks() {
+    for (value, code) in [(f64::NAN, 0x7fc0_0000_u32), (f64::INFINITY, 0x7f80_0000)] {
+        let points = [TRIANGLE[0], TRIANGLE[1], TRIANGLE[2], [7.0, value, 7.0]];
+        let mut document = shown_as(UNBOUNDED, &points, &[0, 1, 2], &[""]);
+        let scene = Scene::gather(&document).unwrap();
+        assert_eq!(scene.mesh.positions.len(), 3);
+        let moved = [DVec3::new(0.0, 0.0, 0.5); 3];
+        scene.scatter(&mut document, &moved).unwrap();
+        let model = document.write().unwrap().model;
+        let kept = code.to_le_bytes();
+        assert!(model.windows(4).any(|bytes| bytes == kept));
+        let scene = Scene::gather(&Document::read(&model, &Files::new()).unwrap()).unwrap();
+        assert!(
+            scene
+                .mesh
+                .positions
+                .iter()
+                .all(|position| position.z == 0.5)
+        );
+
+        let error = Scene::gather(&shown_as(UNBOUNDED, &points, &[0, 1, 3], &[""])).unwrap_err();
+        assert_eq!(error.code(), "document.non-finite-position");
+        assert!(error.to_string().contains("vertex 3"), "{error}");
+    }
+}
+
+/// Where the first vertices of what each node shows are.
+fn places(builder: &GltfBuilder) -> Vec<[f64; 3]> {
+    let pieces = Scene::pieces(&read(&builder.build())).unwrap();
+    pieces
+        .iter()
+        .map(|piece| piece.positions[0].to_array())
+        .collect()
+}
+
+/// A triangle as mesh 0, and the JSON text of nodes and scenes.
+fn with_nodes(nodes: &[&str], scenes: &str) -> GltfBuilder {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    builder.mesh(&[primitive(position, None, 4)]);
+    nodes.iter().for_each(|node| _ = builder.node(node));
+    builder.members.push(format!(r#""scenes":{scenes}"#));
+    builder
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_shows_a_shared_node_once_each_way() {
+    let nodes = [
+        r#"{"mesh":0}"#,
+        r#"{"children":[0,0],"translation":[10,0,0]}"#,
+        r#"{"children":[0],"translation":[20,0,0]}"#,
+        r#"{"children":[2,1],"translation":[0,9,0]}"#,
+    ];
+    let shared = with_nodes(&nodes, r#"[{"nodes":[1,2]}]"#);
+    assert_eq!(places(&shared), [[10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]);
+    let all = with_nodes(&nodes, r#"[{"nodes":[3,1,0]}]"#);
+    let expected = [
+        [0.0, 0.0, 0.0],
+        [10.0, 0.0, 0.0],
+        [20.0, 9.0, 0.0],
+        [10.0, 9.0, 0.0],
+    ];
+    assert_eq!(places(&all), expected);
+    // Copies are the same bytes: they move as one.
+    let mut document = read(&all.build());
+    let scene = Scene::gather(&document).unwrap();
+    assert_eq!(scene.admissible.orbits.len(), 3);
+    let moved = vec![DVec3::new(0.0, 0.0, 0.5); scene.mesh.positions.len()];
+    scene.scatter(&mut document, &moved).unwrap();
+    let positions = scene.positions_in(&document).unwrap();
+    assert!(positions.iter().all(|position| position.z == 0.5));
+}
+
+/// Some exporters list every node of a scene in it, under parents that move nothing.
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_shows_a_child_that_it_lists_too_once_at_each_place() {
+    let nodes = [r#"{"mesh":0,"translation":[5,0,0]}"#, r#"{"children":[0]}"#];
+    assert_eq!(
+        places(&with_nodes(&nodes, r#"[{"nodes":[0,1]}]"#)),
+        [[5.0, 0.0, 0.0]]
+    );
+    assert_eq!(
+        places(&with_nodes(&nodes, r#"[{"nodes":[0]}]"#)),
+        [[5.0, 0.0, 0.0]]
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_of_more_ways_than_nodes_may_be_is_refused() {
+    let mut nodes = vec![r#"{"mesh":0}"#.to_owned()];
+    for level in 0..40 {
+        let below = nodes.len() - 1;
+        let below = if level == 0 {
+            vec![below]
+        } else {
+            vec![below - 1, below]
+        };
+        nodes.extend([
+            format!(r#"{{"children":{below:?}}}"#),
+            format!(r#"{{"children":{below:?},"translation":[0,0,{level}]}}"#),
+        ]);
+    }
+    let nodes: Vec<&str> = nodes.iter().map(String::as_str).collect();
+    let built = with_nodes(&nodes, r#"[{"nodes":[79,80]}]"#).build();
+    let error = Document::read(&built.bytes, &built.files).err().unwrap();
+    assert_eq!(error.code(), "document.too-large");
+}
+
+/// A triangle that instances place, with these accessors of floats as attributes.
+fn instanced(attributes: &[(&str, &str, &[f32])]) -> GltfBuilder {
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    let position = builder.positions(0, Layout::F32, &TRIANGLE);
+    builder.mesh(&[primitive(position, None, 4)]);
+    let mut named = Vec::new();
+    for (name, kind, numbers) in attributes {
+        let bytes: Vec<u8> = numbers
+            .iter()
+            .flat_map(|number| number.to_le_bytes())
+            .collect();
+        let offset = builder.push(0, &bytes);
+        let view = builder.view(0, offset, bytes.len(), None);
+        let count = numbers.len() / if *kind == "VEC4" { 4 } else { 3 };
+        let accessor = builder.accessor(format!(
+            r#"{{"bufferView":{view},"componentType":5126,"count":{count},"type":"{kind}"}}"#
+        ));
+        named.push(format!(r#""{name}":{accessor}"#));
+    }
+    builder.node(&format!(
+        r#"{{"mesh":0,"translation":[0,0,1],"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{{}}}}}}}}}"#,
+        named.join(",")
+    ));
+    builder
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_counts_instances() {
+    let moved: &[f32] = &[10.0, 0.0, 0.0, 20.0, 0.0, 0.0, 10.0, 0.0, 0.0];
+    let builder = instanced(&[("TRANSLATION", "VEC3", moved)]);
+    // The third instance is where the first one is.
+    assert_eq!(places(&builder), [[10.0, 0.0, 1.0], [20.0, 0.0, 1.0]]);
+    let document = read(&builder.build());
+    assert_eq!(
+        (document.num_stated_nodes(), document.nodes().len()),
+        (1, 3)
+    );
+    assert_eq!(Scene::gather(&document).unwrap().admissible.orbits.len(), 3);
+    let turned: &[f32] = &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let scaled: &[f32] = &[2.0, 2.0, 2.0, 1.0, 1.0, 1.0];
+    let builder = instanced(&[
+        ("ROTATION", "VEC4", turned),
+        ("SCALE", "VEC3", scaled),
+        ("_ID", "VEC3", &[]),
+    ]);
+    let pieces = Scene::pieces(&read(&builder.build())).unwrap();
+    assert_eq!(pieces[0].positions[1], DVec3::new(-2.0, 0.0, 1.0));
+    assert_eq!(pieces[1].positions[1], DVec3::new(1.0, 0.0, 1.0));
+    // What places nothing leaves the mesh where it is.
+    assert_eq!(
+        places(&instanced(&[("_ID", "VEC3", moved)])),
+        [[0.0, 0.0, 1.0]]
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn scene_with_wrong_instances_is_refused() {
+    let two: &[f32] = &[1.0; 6];
+    for attributes in [
+        [("TRANSLATION", "VEC3", two), ("SCALE", "VEC3", &two[..3])],
+        [("TRANSLATION", "VEC3", two), ("ROTATION", "VEC3", two)],
+    ] {
+        let built = instanced(&attributes).build();
+        let error = Document::read(&built.bytes, &built.files).err().unwrap();
+        assert_eq!(error.code(), "document.bad-accessor");
+    }
+    let mut builder = instanced(&[("TRANSLATION", "VEC3", two)]);
+    builder.accessors[1] = r#"{"componentType":5126,"count":4000000000,"type":"VEC3"}"#.to_owned();
+    let built = builder.build();
+    let error = Document::read(&built.bytes, &built.files).err().unwrap();
+    assert_eq!(error.code(), "document.too-large");
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -246,6 +246,51 @@ fn small_models_hold_a_mark_without_a_payload() {
     assert!(capacity.reason.is_some());
 }
 
+/// A place on the globe in metres: 32-bit numbers there are 1 m apart.
+#[wasm_bindgen_test(unsupported = test)]
+fn embed_says_that_numbers_are_too_coarse() {
+    let mut mesh = asteroid();
+    for position in &mut mesh.positions {
+        *position = *position * 5.0 + DVec3::new(1e7, 2e7, 0.0);
+    }
+    let error = marked(&to_glb(&mesh), &key(1)).err().unwrap();
+    assert_eq!(error.code(), "scene.coarse-numbers");
+    assert!(error.to_string().contains("origin"), "{error}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn embed_says_at_once_that_nothing_can_move() {
+    let mut stages = Vec::new();
+    let mut watch = |stage: Stage, _: f64| {
+        stages.push(stage);
+        ControlFlow::Continue(())
+    };
+    let (json, files) = {
+        let Built { bytes, files } = gallery(Packing::External);
+        let json = String::from_utf8(bytes).unwrap();
+        (
+            json.replace(r#""POSITION":"#, r#""_COPY":0,"POSITION":"#),
+            files,
+        )
+    };
+    let copies: Vec<&str> = json.split(r#""_COPY":0,"POSITION":"#).skip(1).collect();
+    let mut aliased = json
+        .split(r#""_COPY":0,"POSITION":"#)
+        .next()
+        .unwrap()
+        .to_owned();
+    for rest in copies {
+        let accessor: String = rest.chars().take_while(char::is_ascii_digit).collect();
+        aliased.push_str(&format!(r#""_COPY":{accessor},"POSITION":{rest}"#));
+    }
+    let model = Model::new(aliased.as_bytes())
+        .with_files(&files)
+        .with_progress(&mut watch);
+    let error = embed(model, payload(), &key(1), &strong()).err().unwrap();
+    assert_eq!(error.code(), "scene.nothing-movable");
+    assert!(stages.iter().all(|&stage| stage == Stage::Read));
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn embed_stops_when_asked_at_any_stage() {
     let model = to_glb(&asteroid());

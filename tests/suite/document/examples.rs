@@ -1,7 +1,7 @@
 //! Single properties of documents, one each.
 
 use meshmark::internals::document::{
-    Container, Document, DocumentError, Files, Mode, PositionGrid, Transform,
+    Container, Document, DocumentError, Files, Mode, Node, PositionGrid, Transform,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -261,6 +261,25 @@ fn a_corner_must_be_a_vertex() {
             triangles(5, 300, Some((component, &[0, 1, value]))).expect_err("a reserved value");
         assert_eq!(error.code(), "document.primitive-restart");
     }
+}
+
+/// Exporters before 2019 counted vertices up to the largest 16-bit number, and every loader reads what they meant.
+#[wasm_bindgen_test(unsupported = test)]
+fn the_reserved_value_is_a_vertex_of_a_list_that_has_it() {
+    let of =
+        |num_points, component, value| triangles(4, num_points, Some((component, &[0, 1, value])));
+    assert_eq!(of(256, Component::U8, 255), Ok(vec![[0, 1, 255]]));
+    assert_eq!(of(65_536, Component::U16, 65_535), Ok(vec![[0, 1, 65_535]]));
+    for (num_points, component, value) in [(255, Component::U8, 255), (300, Component::U16, 65_535)]
+    {
+        let error = of(num_points, component, value).expect_err("no such vertex");
+        assert_eq!(error.code(), "document.primitive-restart");
+    }
+    let strip = triangles(5, 256, Some((Component::U8, &[0, 1, 255])));
+    assert_eq!(
+        strip.expect_err("a strip").code(),
+        "document.primitive-restart"
+    );
 }
 
 // Bounds and padding.
@@ -691,6 +710,46 @@ fn a_byte_order_mark_is_kept() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn bytes_after_the_end_of_a_glb_are_kept() {
+    let Built { mut bytes, files } = triangle(Packing::Glb).build();
+    bytes.extend_from_slice(b"signed by nobody");
+    let mut document = Document::read(&bytes, &files).expect("a document");
+    assert_eq!(document.write().expect("a written document").model, bytes);
+    move_first(&mut document, 0, [-2.0, 0.0, 0.0]).expect("a movable position");
+    let written = document.write().expect("a written document").model;
+    let length = u32::from_le_bytes(*written[8..].first_chunk().expect("a length"));
+    assert_eq!(&written[length as usize..], b"signed by nobody");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_is_null_is_not_there() {
+    let mut builder = triangle(Packing::DataUri);
+    builder.accessors[0] = builder.accessors[0]
+        .replace(r#""min":[0,0,0],"#, r#""min":null,"#)
+        .replace(r#""max":[1,1,0]"#, r#""max":[1,null,0]"#);
+    builder.node(r#"{"mesh":0,"matrix":null,"children":null,"translation":[1,2,3]}"#);
+    let mut document = read(&builder);
+    let translated = |node: &Node| {
+        matches!(
+            node.transform,
+            Transform::Decomposed {
+                translation: [1.0, 2.0, 3.0],
+                ..
+            }
+        )
+    };
+    assert!(document.nodes().iter().any(translated));
+    let model = builder.build().bytes;
+    assert_eq!(document.write().expect("a written document").model, model);
+    move_first(&mut document, 0, [-2.0, 0.0, 0.0]).expect("a movable position");
+    assert!(
+        text(&document).contains(r#""min":null,"max":[1,1.0,0]"#),
+        "{}",
+        text(&document)
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn unknown_data_may_be_anything() {
     let mut builder = triangle(Packing::DataUri);
     let deep = format!("{}{}", "[".repeat(20_000), "]".repeat(20_000));
@@ -784,6 +843,15 @@ fn harmless_extensions_may_be_required() {
         "KHR_texture_transform",
         "KHR_materials_unlit",
         "KHR_texture_basisu",
+        "MSFT_lod",
+        "VRM",
+        "VRMC_springBone",
+        "KHR_audio_emitter",
+        "KHR_physics_rigid_bodies",
+        "KHR_interactivity",
+        "OMI_seat",
+        "AGI_articulations",
+        "CESIUM_RTC",
     ] {
         let mut builder = triangle(Packing::Glb);
         builder.members.push(format!(

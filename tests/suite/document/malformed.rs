@@ -334,8 +334,8 @@ fn malformed_json_is_refused() {
         (
             r#""uri":"part%200.bin""#,
             r#""uri":null"#,
-            "document.bad-json",
-            Some("/buffers/0/uri"),
+            "document.missing-data",
+            Some("/buffers/0"),
         ),
         // References.
         (
@@ -430,18 +430,6 @@ fn malformed_json_is_refused() {
             Some("/nodes/0"),
         ),
         (
-            r#""children":[1]"#,
-            r#""children":[1,1]"#,
-            "document.shared-node",
-            Some("/nodes/0/children/1"),
-        ),
-        (
-            r#""nodes":[0]"#,
-            r#""nodes":[0,1]"#,
-            "document.not-a-root",
-            Some("/scenes/0/nodes/1"),
-        ),
-        (
             r#""nodes":[0]"#,
             r#""nodes":[2]"#,
             "document.bad-index",
@@ -450,7 +438,7 @@ fn malformed_json_is_refused() {
         // Extensions.
         (
             r#""skins":[]"#,
-            r#""extensionsRequired":["KHR_texture_transform","VENDOR_geometry"]"#,
+            r#""extensionsRequired":["KHR_texture_transform","KHR_gaussian_splatting"]"#,
             "document.extension-unsupported",
             Some("/extensionsRequired/1"),
         ),
@@ -511,24 +499,6 @@ fn malformed_numbers_in_buffers_are_refused() {
     };
     // Positions are the first 48 bytes; indices follow, then the sparse base (48), indices and values.
     let sparse_indices = 48 + 8 + 48;
-    for (name, value) in [("NaN", f32::NAN), ("infinity", f32::INFINITY)] {
-        let (json, files) = change(16, &value.to_le_bytes());
-        assert_refused(
-            name,
-            &json,
-            &files,
-            "document.non-finite-position",
-            Some("/accessors/0"),
-        );
-        let (json, files) = change(sparse_indices + 4 + 12, &value.to_le_bytes());
-        assert_refused(
-            name,
-            &json,
-            &files,
-            "document.non-finite-position",
-            Some("/accessors/2"),
-        );
-    }
     let indices = Some("/meshes/0/primitives/0/indices");
     let (json, files) = change(50, &4_u16.to_le_bytes());
     assert_refused(
@@ -688,6 +658,19 @@ fn external_buffers_are_named_once() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn linked_files_are_named_whatever_names_them() {
+    let text = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a%20b.bin"},{"uri":"data:;base64,AA"}],
+        "images":[{"uri":"t/x.png"},{"uri":"https://example.org/y.png"},{"uri":"//example.org/z.png"},{"uri":"t/x.png"}],
+        "extensions":{"KHR_audio_emitter":{"audio":[{"uri":"s:1.mp3"},{"uri":"1:s.mp3"}]}},"extras":{"uri":""}}"#;
+    assert_eq!(
+        Document::linked_files(text.as_bytes()),
+        Ok(["1:s.mp3", "a b.bin", "t/x.png"]
+            .map(str::to_owned)
+            .to_vec())
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn the_columns_of_a_matrix_are_padded() {
     // The first buffer view has 48 bytes: 4 matrices of 3 columns of 3 bytes, 2 of 3 columns of 6 bytes.
     for (component, count) in [(Component::U8, 4), (Component::U16, 2)] {
@@ -744,8 +727,6 @@ fn malformed_containers_are_refused() {
     for length in 4..sound.len() {
         refused("truncated", &sound[..length], "document.truncated");
     }
-    let longer = [&sound[..], b"!"].concat();
-    refused("more bytes than stated", &longer, "document.bad-container");
     let change = |offset: usize, bytes: &[u8]| {
         let mut model = sound.clone();
         model[offset..offset + bytes.len()].copy_from_slice(bytes);

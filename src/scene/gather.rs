@@ -19,6 +19,35 @@ impl Scene {
         Gathering::of(document)?.weld(document)
     }
 
+    /// Gathers one mesh as it is modelled, whether or not a scene shows it.
+    ///
+    /// # Errors
+    ///
+    /// As [`gather`](Self::gather).
+    pub fn of_mesh(document: &Document, mesh: usize) -> Result<Scene, SceneError> {
+        let placed = Placed {
+            node: 0,
+            mesh,
+            to_world: DAffine3::IDENTITY,
+        };
+        Gathering::of_placed(document, vec![placed])?.weld(document)
+    }
+
+    /// The meshes with triangles that no scene shows: levels of detail (`MSFT_lod`), and what is left over.
+    pub fn unshown(document: &Document) -> Vec<usize> {
+        let mut is_shown = vec![false; document.meshes().len()];
+        for placed in placed_nodes(document) {
+            if let Some(shown) = is_shown.get_mut(placed.mesh) {
+                *shown = true;
+            }
+        }
+        let drawn = drawn_parts(document).into_iter().zip(is_shown).enumerate();
+        drawn
+            .filter(|(_, (parts, is_shown))| !parts.is_empty() && !is_shown)
+            .map(|(mesh, _)| mesh)
+            .collect()
+    }
+
     /// What [`gather`](Self::gather) gathers, before it is welded: a mesh for each position accessor that a node shows, in world space.
     ///
     /// # Errors
@@ -131,7 +160,10 @@ pub(super) struct Gathering {
 
 impl Gathering {
     fn of(document: &Document) -> Result<Gathering, SceneError> {
-        let placed = placed_nodes(document);
+        Gathering::of_placed(document, placed_nodes(document))
+    }
+
+    fn of_placed(document: &Document, placed: Vec<Placed>) -> Result<Gathering, SceneError> {
         let count = Count::new(document, placed.iter().map(|placed| placed.mesh))?;
         count.check()?;
         let drawn = drawn_parts(document);

@@ -3,7 +3,7 @@
 use super::follow::followers;
 use super::uses::uses;
 use super::{Scene, SceneError};
-use crate::document::Document;
+use crate::document::{Document, Slot};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -43,6 +43,19 @@ impl Scene {
             document.set_positions(accessor, &positions)?;
         }
         Ok(())
+    }
+
+    /// Whether some bytes are positions of both.
+    ///
+    /// # Errors
+    /// Where the document is another one.
+    pub fn shares_with(&self, other: &Scene, document: &Document) -> Result<bool, SceneError> {
+        let slots = |scene: &Scene| -> Result<Vec<Slot>, SceneError> {
+            let uses = uses(document, &scene.placements)?.into_iter();
+            Ok(uses.map(|usage| usage.slot).collect())
+        };
+        let (own, its) = (slots(self)?, slots(other)?);
+        Ok(own.iter().any(|slot| its.binary_search(slot).is_ok()))
     }
 
     /// Where a document that differs in positions only has the vertices of this scene: each where its first element is.

@@ -152,6 +152,8 @@ export interface EmbedReport {
   /** What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen. */
   warnings: string[];
   strength: number;
+  /** Meshes that no scene shows, by their place in the file's list: levels of detail, and what is left over; and whether they were marked, each alone. */
+  unshown: { mesh: number; isMarked: boolean }[];
   /** The output as `extract` reads it. */
   readBack: DetailedExtraction;
   forecast: Forecast[];

@@ -1,6 +1,6 @@
 //! What a model can hold: it is marked with a key that is nobody's, and nothing is kept of that.
 
-use super::marking::{WITHOUT_PAYLOAD, hold, is_of_the_model};
+use super::marking::{WITHOUT_PAYLOAD, hold};
 use super::{EmbedOptions, Error, Model, Strength};
 use crate::bits::Payload;
 use crate::key::Key;
@@ -50,7 +50,7 @@ pub fn capacity<'a>(model: impl Into<Model<'a>>) -> Result<Capacity, Error> {
         let strength = Strength::from_name(name).unwrap_or(Strength::BALANCED);
         let options = EmbedOptions::default().with_strength(strength);
         let holds = match hold(&mut model, payload, &key, &options) {
-            Err(refusal) if is_of_the_model(&refusal) => {
+            Err(refusal) if refusal.is_of_the_model() => {
                 most.reason.get_or_insert(refusal.to_string());
                 Holds::Nothing
             }

@@ -2,7 +2,7 @@
 
 use super::error::Advice;
 use super::forecast::{forecast, is_fragile};
-use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold, is_of_the_model};
+use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold};
 use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
 use crate::bits::Payload;
 use crate::digest::sha256;
@@ -58,10 +58,11 @@ fn embed_in(
                 parts,
                 marked,
                 written,
+                unshown,
             },
         read_back,
     } = match hold(&mut model, payload, key, options) {
-        Err(refusal) if is_of_the_model(&refusal) => {
+        Err(refusal) if refusal.is_of_the_model() => {
             return Err(advised(refusal, &mut model, payload, key, options)?);
         }
         held => held?,
@@ -83,6 +84,7 @@ fn embed_in(
         is_fragile,
         warnings: warnings(&deformation, payload, is_fragile),
         strength: options.strength.rms_rel(),
+        unshown,
         read_back,
         forecast,
         host_sha256: sha256(model.bytes),
@@ -112,7 +114,7 @@ fn advised(
     let is_weaker = options.strength.rms_rel() < strong.rms_rel();
     let is_without_some = options.carriers.len() < all.carriers.len();
     let mut helps = |options: &EmbedOptions| match hold(model, payload, key, options) {
-        Err(other) if is_of_the_model(&other) => Ok(false),
+        Err(other) if other.is_of_the_model() => Ok(false),
         held => held.map(|_| true),
     };
     let advice = if is_without_some && helps(&all.with_strength(options.strength))? {

@@ -93,6 +93,15 @@ pub enum Error {
 }
 
 impl Error {
+    /// Whether the model is refused for what it is, not for what was asked.
+    pub(super) fn is_of_the_model(&self) -> bool {
+        match self {
+            Error::Carrier(refusal) => !matches!(refusal, CarrierError::Cancelled(_)),
+            Error::Unreadable { .. } => true,
+            _ => false,
+        }
+    }
+
     /// The stable code of this error.
     pub fn code(&self) -> &'static str {
         match self {

@@ -1,6 +1,7 @@
 //! What a mark is likely to survive: tried on the marked model itself.
 
 use super::judge::Judge;
+use super::read_back::is_read;
 use super::report::{CarrierReading, Extraction, Forecast, Input, Level, Verdict};
 use crate::attack::{Attack, CROP, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step};
 use crate::bits::Payload;
@@ -78,14 +79,6 @@ pub(super) fn forecast(
 pub(super) fn is_fragile(forecast: &[Forecast]) -> bool {
     let taken = |row: &Forecast| row.attack == WEB && row.level == Level::Red;
     forecast.iter().any(taken)
-}
-
-/// Whether what was embedded is what was read: a payload, or that there is a mark.
-pub(super) fn is_read(found: &Extraction, payload: Option<Payload>) -> bool {
-    match payload {
-        Some(payload) => found.number == Some(payload.number()),
-        None => found.verdict == Verdict::Present,
-    }
 }
 
 fn level(found: &Extraction, payload: Option<Payload>) -> Level {

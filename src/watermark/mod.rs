@@ -1,6 +1,7 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
 mod capacity;
+mod displace;
 mod embed;
 mod error;
 mod extract;
@@ -11,8 +12,10 @@ mod marking;
 mod model;
 mod note;
 mod options;
+mod read_back;
 mod report;
 mod suspect;
+mod unshown;
 
 pub use capacity::{Capacity, Holds, capacity};
 pub use embed::{Embedding, embed};
@@ -25,6 +28,6 @@ pub use note::{
 };
 pub use options::{EmbedOptions, Strength};
 pub use report::{
-    CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Verdict,
+    CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Unshown, Verdict,
 };
 pub use suspect::{Surface, Suspect};

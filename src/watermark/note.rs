@@ -1,6 +1,6 @@
 //! Notes: a text in the distances of all vertices from the centroid, beside the mark or without one. Read with the key alone.
 
-use super::marking::write;
+use super::displace::write;
 use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
 use crate::carrier::direction::{Cells, NUM_TESTS};
@@ -127,7 +127,7 @@ pub fn embed_note<'a>(
     let leeway = Leeway::new(&scene.mesh, &parts, Bounds::STRONG);
     leeway.keep(&scene.mesh.positions, &mut displacement, &scene.admissible);
     model.step(Stage::Write, 0.0)?;
-    let positions = write(&model, &mut document, &scene, &leeway, displacement)?;
+    let positions = write(&model, &mut document, &scene, &leeway, displacement)?.positions;
     let marked = scene.mesh.with_positions(positions);
     let deformation = Deformation::between(&scene.mesh, &parts, &marked.positions);
     let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);

@@ -175,6 +175,8 @@ pub struct EmbedReport {
     pub warnings: Vec<String>,
     /// The strength that was asked for.
     pub strength: f64,
+    /// The meshes that no scene shows, and whether they were marked, each alone.
+    pub unshown: Vec<Unshown>,
     /// The output, read again from its bytes.
     pub read_back: Extraction,
     /// What the mark is likely to survive.
@@ -183,6 +185,17 @@ pub struct EmbedReport {
     pub host_sha256: String,
     /// SHA-256 of the main file after.
     pub marked_sha256: String,
+}
+
+/// A mesh that no scene shows: a level of detail, or what is left over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Unshown {
+    /// Its place in the file's list of meshes.
+    pub mesh: usize,
+    /// Whether it was marked. Else it is as it was: too small, or it shares its positions with what is shown.
+    pub is_marked: bool,
 }
 
 /// How a mark is likely to stand an attack.

@@ -19,6 +19,7 @@ mod geometry;
 mod golden;
 mod key;
 mod leeway;
+mod levels;
 mod mesh;
 mod models;
 mod note;

@@ -1,0 +1,136 @@
+//! Displacing: the mark in every carrier that suits a host, and back into the file.
+
+use super::{EmbedOptions, Error, Model};
+use crate::carrier::{Carrier, CarrierError, Host, Mark};
+use crate::document::Document;
+use crate::geometry::{Distortion, Leeway};
+use crate::mesh::{Admissible, Mesh};
+use crate::progress::Progress;
+use crate::scene::Scene;
+use glam::DVec3;
+
+/// The displacement that gives the host the mark, in every carrier that it suits.
+pub(super) fn displacement(
+    scene: &Scene,
+    leeway: &Leeway,
+    mark: &Mark,
+    has_payload: bool,
+    options: &EmbedOptions,
+    progress: &mut dyn Progress,
+) -> Result<Vec<DVec3>, Error> {
+    let mesh = displaced(scene, leeway, mark, has_payload, options, progress)?;
+    // Each carrier keeps to a limit of its own: together they exceed the whole's by a few percent, which quantizers do not
+    // notice.
+    let limit = options.strength.rms_rel();
+    let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
+    let scale = if taken > limit { limit / taken } else { 1.0 };
+    let pairs = mesh.positions.iter().zip(&scene.mesh.positions);
+    Ok(pairs
+        .map(|(marked, host)| (*marked - *host) * scale)
+        .collect())
+}
+
+/// The host's mesh with the mark in it, in every carrier that it suits.
+fn displaced(
+    scene: &Scene,
+    leeway: &Leeway,
+    mark: &Mark,
+    has_payload: bool,
+    options: &EmbedOptions,
+    progress: &mut dyn Progress,
+) -> Result<Mesh, Error> {
+    let limit = options.strength.rms_rel();
+    let mut mesh = scene.mesh.clone();
+    // Marks that are not sturdy, and what was refused.
+    let (mut weak, mut refusals) = (Vec::new(), Vec::new());
+    for carrier in Carrier::ALL {
+        if !options.carriers.contains(&carrier) {
+            continue;
+        }
+        let is_first = mesh == scene.mesh;
+        let rms_rel = if is_first {
+            limit
+        } else {
+            // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
+            let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
+            (below * limit).sqrt() * Carrier::SHARE_ON_TOP
+        };
+        let host = Host {
+            mesh: &mesh,
+            leeway,
+            admissible: &scene.admissible,
+            rms_rel,
+            hidden: options.strength.is_hidden(),
+            on_top: !is_first,
+        };
+        match carrier.embed(&host, mark, progress) {
+            Ok(embedded) if embedded.is_sturdy() => mesh.displace(&embedded.displacement),
+            Ok(embedded) => weak.push(embedded),
+            Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(refusal) => refusals.push(refusal),
+        }
+    }
+    if mesh != scene.mesh {
+        return Ok(mesh);
+    }
+    let best = weak
+        .into_iter()
+        .max_by(|a, b| a.share().total_cmp(&b.share()));
+    let Some(best) = best else {
+        let nearest = refusals
+            .into_iter()
+            .max_by(|a, b| a.share().total_cmp(&b.share()));
+        return Err(nearest.map_or(Error::NoCarrier, Error::Carrier));
+    };
+    if has_payload && best.share() < 1.0 {
+        return Err(best.without_payload().into());
+    }
+    mesh.displace(&best.displacement);
+    Ok(mesh)
+}
+
+/// What was written of a scene's vertices.
+pub(super) struct Moved {
+    /// Where they are.
+    pub positions: Vec<DVec3>,
+    /// What was asked for, of those that were moved.
+    pub displacement: Vec<DVec3>,
+}
+
+/// Displaces the vertices of a document that was just read. Those that rounding to the file's numbers takes too far, or whose triangles
+/// it turns too far, stay where they were.
+pub(super) fn write(
+    model: &Model,
+    document: &mut Document,
+    scene: &Scene,
+    leeway: &Leeway,
+    mut displacement: Vec<DVec3>,
+) -> Result<Moved, Error> {
+    loop {
+        scene.scatter(document, &displacement)?;
+        let positions = scene.positions_in(document)?;
+        let mut beyond = leeway.beyond(&positions);
+        beyond.retain(|&vertex| displacement[vertex as usize] != DVec3::ZERO);
+        if beyond.is_empty() {
+            return Ok(Moved {
+                positions,
+                displacement,
+            });
+        }
+        freeze(&mut displacement, &scene.admissible, &beyond);
+        *document = Document::read(model.bytes, model.files)?;
+    }
+}
+
+/// Leaves vertices, and those that move with them, where they are.
+fn freeze(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32]) {
+    for &vertex in vertices {
+        displacement[vertex as usize] = DVec3::ZERO;
+    }
+    for orbit in &admissible.orbits {
+        let members = || orbit.members.iter().map(|&(vertex, _)| vertex as usize);
+        if members().any(|vertex| displacement[vertex] == DVec3::ZERO) {
+            members().for_each(|vertex| displacement[vertex] = DVec3::ZERO);
+        }
+    }
+}

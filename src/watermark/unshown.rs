@@ -1,0 +1,74 @@
+//! Meshes that no scene shows, but an extension or another program may: levels of detail, and what is left over. Each is marked as if it
+//! were a file of its own.
+
+use super::displace::{displacement, write};
+use super::read_back::is_seen_at_once;
+use super::report::Unshown;
+use super::{EmbedOptions, Error, Model};
+use crate::bits::Payload;
+use crate::carrier::Mark;
+use crate::document::Document;
+use crate::geometry::Leeway;
+use crate::scene::Scene;
+use glam::DVec3;
+
+/// Meshes that are marked, at most: for each the file is read anew.
+const MOST_MARKED: usize = 32;
+
+/// Marks the meshes of a document that no scene shows, where they share no position with what is marked already; and says which were
+/// marked.
+pub(super) fn mark_unshown(
+    model: &mut Model,
+    document: &mut Document,
+    shown: &Scene,
+    mark: &Mark,
+    payload: Option<Payload>,
+    options: &EmbedOptions,
+) -> Result<Vec<Unshown>, Error> {
+    let unshown = Scene::unshown(document).into_iter().enumerate();
+    let mut all = Vec::new();
+    let mut others = Vec::new();
+    for (number, mesh) in unshown {
+        let mut is_marked = false;
+        if number < MOST_MARKED
+            && let Some((scene, displacement)) = marked(model, mesh, mark, payload, options)?
+        {
+            let mut shares = false;
+            for other in others.iter().chain([shown]) {
+                shares |= scene.shares_with(other, document)?;
+            }
+            if !shares {
+                scene.scatter(document, &displacement)?;
+                others.push(scene);
+                is_marked = true;
+            }
+        }
+        all.push(Unshown { mesh, is_marked });
+    }
+    Ok(all)
+}
+
+/// A mesh alone, and the displacement by which it holds the mark; none where it cannot hold it.
+fn marked(
+    model: &mut Model,
+    mesh: usize,
+    mark: &Mark,
+    payload: Option<Payload>,
+    options: &EmbedOptions,
+) -> Result<Option<(Scene, Vec<DVec3>)>, Error> {
+    let mut document = Document::read(model.bytes, model.files)?;
+    let Ok(scene) = Scene::of_mesh(&document, mesh) else {
+        return Ok(None);
+    };
+    let leeway = Leeway::new(&scene.mesh, &scene.parts(), options.strength.bounds());
+    let displacement = match displacement(&scene, &leeway, mark, payload.is_some(), options, model)
+    {
+        Err(refusal) if refusal.is_of_the_model() => return Ok(None),
+        displacement => displacement?,
+    };
+    let moved = write(model, &mut document, &scene, &leeway, displacement)?;
+    let mesh = scene.mesh.with_positions(moved.positions);
+    drop(leeway);
+    let is_read = is_seen_at_once(&mesh, mark.key, payload, model)?;
+    Ok(is_read.then_some((scene, moved.displacement)))
+}

@@ -122,7 +122,7 @@ impl Detector {
         let read = |number, feature| {
             suspect(&[Ring { number, feature }], None)
                 .measurement(Carrier::Ring)
-                .read(&self.key)
+                .read_until(&self.key, &|_| false)
         };
         let mut owned = Vec::new();
         for number in 0..num_rings {

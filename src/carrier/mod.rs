@@ -81,15 +81,17 @@ impl Carrier {
         }
     }
 
-    /// Measures and reads in one go, measuring no more than it takes to find a mark.
-    pub(crate) fn read(
+    /// Measures and reads in one go, measuring no more than it takes to find a mark: nothing beyond the suspect as it is where that
+    /// `is_settled`.
+    pub(crate) fn read_until(
         self,
         mesh: &Mesh,
         key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
         progress: &mut dyn Progress,
     ) -> Result<Reading, Cancelled> {
         match self {
-            Carrier::Solid => solid::Suspect::new(mesh).read(key, progress),
+            Carrier::Solid => solid::Suspect::new(mesh).read_until(key, is_settled, progress),
             Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
         }
     }
@@ -102,8 +104,8 @@ impl Carrier {
         progress: &mut dyn Progress,
     ) -> Result<Reading, Cancelled> {
         match self {
-            Carrier::Solid => solid::Suspect::as_it_is(mesh).read(key, progress),
-            Carrier::Ring => self.read(mesh, key, progress),
+            Carrier::Solid => solid::Suspect::as_it_is(mesh).read_until(key, &|_| true, progress),
+            Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
         }
     }
 
@@ -114,6 +116,7 @@ impl Carrier {
         host: &KnownHost,
         is_smoothed: bool,
         key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
         progress: &mut dyn Progress,
     ) -> Result<Reading, Cancelled> {
         match self {
@@ -123,9 +126,9 @@ impl Carrier {
                     true => surfaces.first_kind(),
                     false => surfaces.plain(),
                 });
-                suspect.read(key, progress)
+                suspect.read_until(key, is_settled, progress)
             }
-            Carrier::Ring => self.read(copy, key, progress),
+            Carrier::Ring => Ok(ring::Measurement::new(copy).read(key)),
         }
     }
 
@@ -181,10 +184,12 @@ impl Measurement {
         }
     }
 
-    /// The soft symbols of a key.
-    pub fn read(&self, key: &Key) -> Reading {
+    /// The soft symbols of a key; those of the suspect as it is where they settle all.
+    pub fn read_until(&self, key: &Key, is_settled: &dyn Fn(&Reading) -> bool) -> Reading {
         match self {
-            Measurement::Solid(solid) => solid.read(key, &mut ignore).unwrap_or_default(),
+            Measurement::Solid(solid) => solid
+                .read_until(key, is_settled, &mut ignore)
+                .unwrap_or_default(),
             Measurement::Ring(ring) => ring.read(key),
         }
     }
@@ -256,18 +261,6 @@ pub struct Needs {
 }
 
 impl Embedded {
-    /// The same, if it is enough to say whose a model is.
-    fn if_present(self) -> Result<Embedded, CarrierError> {
-        if self.exponent >= self.needs.presence {
-            return Ok(self);
-        }
-        Err(CarrierError::TooWeak {
-            carrier: self.carrier,
-            reached: self.exponent,
-            needed: self.needs.presence,
-        })
-    }
-
     /// How much of what a payload needs it reaches.
     pub fn share(&self) -> f64 {
         self.exponent / self.needs.payload

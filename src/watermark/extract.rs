@@ -5,7 +5,7 @@ use super::judge::Judge;
 use super::report::{Extraction, Input};
 use super::suspect::Suspect;
 use crate::bits::Payload;
-use crate::carrier::Carrier;
+use crate::carrier::{Carrier, Reading};
 use crate::evidence::Evidence;
 use crate::key::Key;
 use crate::progress::Stage;
@@ -54,7 +54,11 @@ pub fn verify(evidence: &Evidence, key: &Key, expected: Payload) -> Extraction {
 }
 
 fn read(evidence: &Evidence, key: &Key, judge: Judge) -> Extraction {
-    judge.conclude(&Carrier::ALL.map(|carrier| evidence.measurement(carrier).read(key)))
+    let read = |carrier| {
+        let is_settled = |reading: &Reading| judge.is_settled(reading);
+        evidence.measurement(carrier).read_until(key, &is_settled)
+    };
+    judge.conclude(&Carrier::ALL.map(read))
 }
 
 /// Reads a suspect in one go, ending as soon as it is sure: a marked model is mostly found before anything but itself was
@@ -71,11 +75,13 @@ pub fn detect<'a>(
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
+    let judge = Judge::new(key, expected, Input::Model);
     let mut readings = Carrier::ALL.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
-        readings[carrier as usize] = carrier.read(&mesh, key, &mut suspect)?;
+        let is_settled = |reading: &Reading| judge.is_settled(reading);
+        readings[carrier as usize] = carrier.read_until(&mesh, key, &is_settled, &mut suspect)?;
     }
-    let conclusion = Judge::new(key, expected, Input::Model).conclude(&readings);
+    let conclusion = judge.conclude(&readings);
     suspect.step(Stage::Test, 1.0)?;
     Ok(conclusion)
 }

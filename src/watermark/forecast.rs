@@ -2,10 +2,10 @@
 
 use super::judge::Judge;
 use super::read_back::is_read;
-use super::report::{CarrierReading, Extraction, Forecast, Input, Level, Verdict};
+use super::report::{CarrierReading, Extraction, Forecast, Input, Level};
 use crate::attack::{Attack, CROP, NOISE, QUANTIZE_EVENLY, SIMPLIFY, SMOOTH, Step};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, KnownHost};
+use crate::carrier::{Carrier, KnownHost, Reading};
 use crate::detection::LN_P_FOUND;
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -62,7 +62,9 @@ pub(super) fn forecast(
         let mut readings = Carrier::ALL.map(|_| Default::default());
         let mut found = judge.conclude(&readings);
         for carrier in Carrier::ALL {
-            let reading = carrier.read_copy(&suspect, &host, is_smoothed, key, &mut report)?;
+            let is_settled = |reading: &Reading| judge.is_settled(reading);
+            let reading =
+                carrier.read_copy(&suspect, &host, is_smoothed, key, &is_settled, &mut report)?;
             readings[carrier as usize] = reading;
             found = judge.conclude(&readings);
             if level(&found, payload) == Level::Green {

@@ -98,6 +98,22 @@ impl Judge {
         conclude(heard.collect(), self.input)
     }
 
+    /// Whether what a carrier has read so far leaves nothing to look for: its payload is found by a wide margin, or it is a mark without
+    /// one. That a reading ends there rejects nothing, so this may depend on all that was read (docs/SECURITY.md, 11).
+    pub(super) fn is_settled(&self, reading: &carrier::Reading) -> bool {
+        let is_found = |hypothesis: &Hypothesis| {
+            let payload = self.decode(hypothesis);
+            let payload = payload.filter(|own| self.expected.is_none_or(|it| it == own.payload));
+            let is_wide = |own: Candidate| union(own.ln_p, LN_CARRIERS) <= 2.0 * LN_P_FOUND;
+            let [pilots, presence] = without_payload(&hypothesis.symbols).map(|own| own.ln_p());
+            // Of a mark with a payload, parities that say -1 are no more than half: its pilots are louder.
+            let is_without = presence < pilots
+                && union(presence, self.charge(hypothesis) + LN_CARRIERS) <= LN_P_FOUND;
+            payload.is_some_and(is_wide) || is_without
+        };
+        reading.hypotheses.iter().any(is_found)
+    }
+
     /// What a carrier says, of which a payload was decoded or not; and whether one was decoded of any.
     fn hear(
         &self,
@@ -119,11 +135,8 @@ impl Judge {
             (decoded, _) => (decoded, None),
         };
         let charged = |h: &Hypothesis| {
-            let presence = against(&h.symbols, |symbol| Codeword::Presence.sign(symbol));
-            union(
-                presence.ln_p().min(pilots(&h.symbols).ln_p()),
-                self.charge(h),
-            )
+            let [pilots, presence] = without_payload(&h.symbols).map(|own| own.ln_p());
+            union(pilots.min(presence), self.charge(h))
         };
         let ln_p_presence = hypotheses.iter().map(charged).fold(0.0, f64::min);
         let ln_p_payload = candidate.as_ref().map_or(0.0, |candidate| candidate.ln_p);
@@ -235,9 +248,14 @@ fn likeliest(candidates: impl Iterator<Item = Candidate>) -> Option<Candidate> {
     candidates.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
-fn pilots(symbols: &[SoftSymbol]) -> Statistic {
+/// What speaks for a mark whatever its payload is, and for one that has none.
+fn without_payload(symbols: &[SoftSymbol]) -> [Statistic; 2] {
     let pilots = symbols.iter().filter(|soft| soft.symbol == Symbol::Pilot);
-    Statistic::new(pilots.map(|soft| (soft.value, soft.weight)))
+    let pilots = Statistic::new(pilots.map(|soft| (soft.value, soft.weight)));
+    [
+        pilots,
+        against(symbols, |symbol| Codeword::Presence.sign(symbol)),
+    ]
 }
 
 fn against(symbols: &[SoftSymbol], sign: impl Fn(Symbol) -> f64) -> Statistic {

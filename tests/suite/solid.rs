@@ -242,7 +242,8 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         codeword: &Codeword::new(MESSAGE),
     };
     let error = Carrier::Solid.embed(&host, &mark, &mut ignore).unwrap_err();
-    assert_eq!(error.code(), "carrier.too-weak");
+    assert_eq!(error.code(), "carrier.too-few-addresses");
+    assert!(error.to_string().contains("3 vertices give 9"), "{error}");
 }
 
 /// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, units of areas and of

@@ -39,14 +39,21 @@ pub fn embed(
     progress: &mut dyn Progress,
 ) -> Result<Embedded, CarrierError> {
     let displacement = displacement(host, mark, progress)?;
-    let embedded = Embedded {
-        exponent: exponent(host, mark, &displacement),
+    let reached = exponent(host, mark, &displacement);
+    step(progress, Stage::Embed, 1.0)?;
+    if reached < NEEDS.presence {
+        return Err(CarrierError::TooWeak {
+            carrier: Carrier::Ring,
+            reached,
+            needed: NEEDS.presence,
+        });
+    }
+    Ok(Embedded {
         displacement,
         carrier: Carrier::Ring,
+        exponent: reached,
         needs: NEEDS,
-    };
-    step(progress, Stage::Embed, 1.0)?;
-    embedded.if_present()
+    })
 }
 
 fn displacement(

@@ -35,11 +35,21 @@ impl Measurement {
 
     /// The soft symbols of a key.
     pub fn read(&self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
+        self.read_until(key, &|_| false, progress)
+    }
+
+    /// The same, ending where what the suspect says as it is settles all.
+    pub fn read_until(
+        &self,
+        key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
         let mut pieces: Vec<SurfacesOf> = Vec::new();
         for piece in self.pieces() {
             pieces.push(Box::new(piece.iter().map(Cow::Borrowed)));
         }
-        read(pieces, &|| Lattice::of(key), progress)
+        read(pieces, &|| Lattice::of(key), is_settled, progress)
     }
 
     /// The surfaces of the whole, and of each piece.
@@ -139,13 +149,19 @@ impl Suspect {
         Suspect(self.0.into_iter().map(change).collect())
     }
 
-    /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark.
-    pub fn read(self, key: &Key, progress: &mut dyn Progress) -> Result<Reading, Cancelled> {
+    /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark, and none where what the suspect says as
+    /// it is settles all.
+    pub fn read_until(
+        self,
+        key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
         let mut pieces: Vec<SurfacesOf> = Vec::new();
         for surfaces in self.0 {
             pieces.push(Box::new(surfaces.map(Cow::Owned)));
         }
-        read(pieces, &|| Lattice::of(key), progress)
+        read(pieces, &|| Lattice::of(key), is_settled, progress)
     }
 }
 

@@ -25,7 +25,10 @@ pub fn embed(
     let is_enough = scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64;
     match (scene.embedded(), is_enough) {
         (Some(scene), true) => Ok(scene),
-        (scene, _) => match (embed_in_frame(host, mark, progress), scene) {
+        (scene, _) => match (
+            embed_in_frame(host, mark, |needs| needs.presence, progress),
+            scene,
+        ) {
             (Err(CarrierError::Cancelled(cancelled)), _) => Err(cancelled.into()),
             (Ok(whole), Some(_)) if whole.is_sturdy() => Ok(whole),
             (_, Some(scene)) => Ok(scene),
@@ -103,8 +106,8 @@ impl<'a> Marked<'a> {
             admissible: &admissible,
             ..*self.host
         };
-        match embed_in_frame(&host, mark, progress) {
-            Ok(object) if object.is_sturdy() => {
+        match embed_in_frame(&host, mark, |needs| needs.sturdy, progress) {
+            Ok(object) => {
                 self.decide(&vertices, &object.displacement);
                 self.num_marked += vertices.len();
                 if self.best.is_none_or(|(most, _)| object.exponent > most) {

@@ -29,10 +29,12 @@ const SCANNED: usize = 2;
 
 /// Reads the surfaces of a suspect with a key, and those of each of its pieces alone, until it is sure of one.
 ///
-/// All are looked at as they are before anything is undone: a marked model is mostly found in that.
+/// All are looked at as they are before anything is undone: a marked model is mostly found in that, and where what was read
+/// then `is_settled`, nothing more is.
 pub fn read<'a>(
     pieces: Vec<SurfacesOf<'a>>,
     lattice: &dyn Fn() -> Lattice,
+    is_settled: &dyn Fn(&Reading) -> bool,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
     let num_pieces = pieces.len();
@@ -47,6 +49,13 @@ pub fn read<'a>(
             begun.push((number, search, surfaces));
         }
     }
+    let mut seen = Reading::default();
+    for (number, search, _) in &begun {
+        seen.add(search.as_it_is().of_piece(*number, num_pieces));
+    }
+    if is_settled(&seen) {
+        return Ok(seen);
+    }
     let mut all = Reading::default();
     for (number, mut search, mut surfaces) in begun {
         let mut report =
@@ -56,13 +65,18 @@ pub fn read<'a>(
         if search.is_sure() {
             return Ok(reading);
         }
-        all.num_addresses = all.num_addresses.max(reading.num_addresses);
-        all.hypotheses.extend(reading.hypotheses);
+        all.add(reading);
     }
     Ok(all)
 }
 
 impl Reading {
+    /// What was read of a piece beside others.
+    fn add(&mut self, piece: Reading) {
+        self.num_addresses = self.num_addresses.max(piece.num_addresses);
+        self.hypotheses.extend(piece.hypotheses);
+    }
+
     /// The reading of one piece of so many, the whole being the first. It has half of the probability of a false alarm, and the
     /// others share the rest.
     fn of_piece(mut self, number: usize, num_pieces: usize) -> Reading {
@@ -112,21 +126,38 @@ impl Search<'_> {
         windows.into_iter().map(read).collect()
     }
 
-    fn conclude(&self) -> Reading {
-        let num_views = |num_pitches| num_pitches * self.turns.len() * STEPS.len();
-        let num_own = num_views(self.nodes[0].surface.pitches.len());
-        let num_undone = num_views(MOST_PITCHES) * (1 + STRENGTHS * num_nodes());
-        let mut hypotheses = Vec::new();
-        for (candidates, num_declared) in [(&self.own, num_own), (&self.undone, num_undone)] {
-            hypotheses.extend(candidates.iter().map(|candidate| {
-                let view = &candidate.view;
-                Hypothesis {
-                    symbols: self.symbols(candidate, view, self.see(candidate, view)),
-                    ln_num_tests: libm::log((KINDS * num_declared) as f64),
-                    piece: 0,
-                }
-            }));
+    /// Ways of reading that differ in pitch, turn and step.
+    fn num_views(&self, num_pitches: usize) -> usize {
+        num_pitches * self.turns.len() * STEPS.len()
+    }
+
+    /// What candidates say, as they were found among so many.
+    fn say(&self, candidates: &[Candidate], num_declared: usize) -> Vec<Hypothesis> {
+        let say = |candidate: &Candidate| Hypothesis {
+            symbols: self.symbols(
+                candidate,
+                &candidate.view,
+                self.see(candidate, &candidate.view),
+            ),
+            ln_num_tests: libm::log((KINDS * num_declared) as f64),
+            piece: 0,
+        };
+        candidates.iter().map(say).collect()
+    }
+
+    /// What the suspect says as it is, before any search.
+    fn as_it_is(&self) -> Reading {
+        let num_own = self.num_views(self.nodes[0].surface.pitches.len());
+        Reading {
+            hypotheses: self.say(&self.own, num_own),
+            num_addresses: self.num_windows,
         }
+    }
+
+    fn conclude(&self) -> Reading {
+        let mut hypotheses = self.as_it_is().hypotheses;
+        let num_undone = self.num_views(MOST_PITCHES) * (1 + STRENGTHS * num_nodes());
+        hypotheses.extend(self.say(&self.undone, num_undone));
         let to_refine = [
             (self.own.first(), 4.5),
             (self.undone.first(), 9.0),
@@ -169,7 +200,7 @@ mod tests {
 
     fn reading(surfaces: &[Surface], lattice: impl Fn() -> Lattice) -> Reading {
         let surfaces = surfaces.iter().map(Cow::Borrowed);
-        read(vec![Box::new(surfaces)], &lattice, &mut ignore).unwrap()
+        read(vec![Box::new(surfaces)], &lattice, &|_| false, &mut ignore).unwrap()
     }
 
     /// What is followed, what it is charged, and what each symbol weighs.

@@ -180,6 +180,8 @@ export interface Inspection {
   extensionsUsed: string[];
   /** What each carrier could hold. */
   capacity: { name: Carrier; addresses: number; neededAddresses: number }[];
+  /** What is strewn far from the model, in sentences: it is left out of all that is said here, and would not be marked. */
+  warnings: string[];
   sha256: string;
 }
 

@@ -58,6 +58,7 @@ fn embed_in(
         parts,
         marked,
         written,
+        strays,
     } = mark(&mut model, payload, key, options)?;
     let distortion = Distortion::between(&host.positions, &marked.positions);
     let deformation = Deformation::between(&host, &parts, &marked.positions);
@@ -85,7 +86,7 @@ fn embed_in(
         max_rel: distortion.max_rel,
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
-        warnings: warnings(&deformation),
+        warnings: warnings(&deformation).into_iter().chain(strays).collect(),
         strength: options.strength.rms_rel(),
         read_back,
         forecast,
@@ -124,6 +125,8 @@ struct Marked {
     parts: Parts,
     marked: Mesh,
     written: Written,
+    /// Where strays lie, in words.
+    strays: Option<String>,
 }
 
 /// Reads, displaces and writes.
@@ -196,6 +199,7 @@ fn mark(
     drop(mesh);
     let positions = write(model, &mut document, &scene, &leeway, displacement)?;
     drop(leeway);
+    let strays = scene.strays_in_words();
     let host = scene.mesh;
     let written = document.write()?;
     drop(document);
@@ -206,6 +210,7 @@ fn mark(
         parts,
         marked,
         written,
+        strays,
     })
 }
 

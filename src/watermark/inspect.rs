@@ -41,6 +41,8 @@ pub struct Inspection {
     pub extensions_used: Vec<String>,
     /// What each carrier could hold.
     pub capacity: Vec<CarrierCapacity>,
+    /// What is strewn far from the model, in sentences: it is left out of all that is said here, and would not be marked.
+    pub warnings: Vec<String>,
     /// SHA-256 of the main file.
     pub sha256: String,
 }
@@ -66,7 +68,9 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
     let mut model = model.into();
     model.step(Stage::Read, 0.0)?;
     let document = Document::read(model.bytes, model.files)?;
-    let mesh = Scene::gather(&document)?.mesh;
+    let scene = Scene::gather(&document)?;
+    let warnings = scene.strays_in_words().into_iter().collect();
+    let mesh = scene.mesh;
     model.step(Stage::Measure, 0.0)?;
     let capacity = |carrier: Carrier| CarrierCapacity {
         name: carrier,
@@ -95,6 +99,7 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
         nodes: document.nodes().len(),
         extensions_used: document.extensions_used().to_vec(),
         capacity: Carrier::ALL.into_iter().map(capacity).collect(),
+        warnings,
         sha256: sha256(model.bytes),
     })
 }

@@ -3,7 +3,6 @@
 use crate::mesh::{Mesh, Sets};
 use glam::DVec3;
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
 
 /// A part of so many triangles could be a model.
 const FEW: usize = 100;
@@ -27,17 +26,31 @@ pub fn without_strays(mesh: &Mesh) -> Option<Vec<bool>> {
         sets.join(a, b);
         sets.join(b, c);
     }
-    let names: Vec<u32> = mesh.triangles.iter().map(|t| sets.find(t[0])).collect();
-    let mut parts: BTreeMap<u32, Part> = BTreeMap::new();
-    for (&triangle, &name) in mesh.triangles.iter().zip(&names) {
-        parts.entry(name).or_default().add(mesh.corners(triangle));
+    // Parts by number, in the order of their first triangles.
+    let mut numbers = vec![u32::MAX; mesh.positions.len()];
+    let mut next = 0;
+    let mut number_of = |triangle: &[u32; 3]| {
+        let number = &mut numbers[sets.find(triangle[0]) as usize];
+        if *number == u32::MAX {
+            *number = next;
+            next += 1;
+        }
+        *number
+    };
+    let names: Vec<u32> = mesh.triangles.iter().map(&mut number_of).collect();
+    if next == 1 {
+        return None;
     }
-    let mut by_area: Vec<(&u32, &Part)> = parts.iter().collect();
+    let mut parts = vec![Part::default(); next as usize];
+    for (&triangle, &name) in mesh.triangles.iter().zip(&names) {
+        parts[name as usize].add(mesh.corners(triangle));
+    }
+    let mut by_area: Vec<(u32, &Part)> = (0..).zip(&parts).collect();
     by_area.sort_by_key(|(_, part)| Reverse(part.area.to_bits()));
     let mut model = by_area.first()?.1.clone();
     let mut strays = Part::default();
-    let mut stray = Vec::new();
-    for (&name, part) in by_area {
+    let mut stray: Vec<u32> = Vec::new();
+    for (name, part) in by_area {
         if part.num_triangles < FEW && part.is_away_from(&model) {
             strays.area += part.area;
             strays.num_triangles += part.num_triangles;
@@ -47,15 +60,17 @@ pub fn without_strays(mesh: &Mesh) -> Option<Vec<bool>> {
             model.high = model.high.max(part.high);
         }
     }
-    let total: f64 = parts.values().map(|part| part.area).sum();
+    let total: f64 = parts.iter().map(|part| part.area).sum();
     let is_little = strays.area <= SHARE * total
         && strays.num_triangles as f64 <= SHARE * mesh.triangles.len() as f64;
     if stray.is_empty() || !is_little {
         return None;
     }
-    stray.sort_unstable();
-    let kept = names.iter().map(|name| stray.binary_search(name).is_err());
-    Some(kept.collect())
+    let mut is_kept = vec![true; parts.len()];
+    for name in stray {
+        is_kept[name as usize] = false;
+    }
+    Some(names.iter().map(|&name| is_kept[name as usize]).collect())
 }
 
 /// Whether a vertex is far from all the others.

@@ -84,6 +84,7 @@ fn embed_in(
         diagonal: diagonal(&host.positions),
         rms_rel: distortion.rms_rel,
         max_rel: distortion.max_rel,
+        max_movement: distortion.max_rel * diagonal(&host.positions),
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
         warnings: warnings(&deformation).into_iter().chain(strays).collect(),
@@ -148,7 +149,7 @@ fn mark(
     };
     let mut mesh = scene.mesh.clone();
     let parts = scene.parts();
-    let leeway = Leeway::new(&scene.mesh, &parts, options.strength.bounds());
+    let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
     let chosen: Vec<Carrier> = Carrier::ALL
         .into_iter()
         .filter(|carrier| options.carriers.contains(carrier))

@@ -159,6 +159,8 @@ pub struct EmbedReport {
     pub rms_rel: f64,
     /// Maximum displacement, as a fraction of that diagonal.
     pub max_rel: f64,
+    /// The same in scene units: metres, where the file keeps to glTF's.
+    pub max_movement: f64,
     /// The farthest that a vertex went from where the mean movement of its part, what hangs together by edges, would have taken it, as a
     /// fraction of the part's own diagonal. At most 0.01 at the subtle and balanced strengths, 0.02 at the strong one.
     pub worst_part_rel: f64,

@@ -25,6 +25,9 @@ pub struct Embed {
     /// subtle, balanced, strong, or a fraction of the diagonal
     #[arg(long, default_value = "balanced")]
     strength: Strength,
+    /// How far a vertex may go at most, in scene units: 0.00005 is 0.05 mm, where these are metres
+    #[arg(long, value_name = "UNITS")]
+    max_movement: Option<f64>,
     /// Comma-separated
     #[arg(long, value_delimiter = ',', default_value = "solid,ring", value_parser = carrier)]
     carriers: Vec<Carrier>,
@@ -34,9 +37,10 @@ impl Embed {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let (payload, key) = (self.payload.read()?, self.owner.key()?);
-        let options = EmbedOptions::default()
+        let mut options = EmbedOptions::default()
             .with_strength(self.strength)
             .with_carriers(self.carriers);
+        options.max_movement = self.max_movement;
         let host = open(&self.input)?;
         let marked = embed(host.model(&mut clock), payload, &key, &options)?;
         let stored = self

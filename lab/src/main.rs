@@ -20,6 +20,7 @@ mod report;
 mod run;
 mod seed;
 mod study;
+mod surface;
 mod wild;
 
 use clap::Parser;
@@ -70,6 +71,9 @@ struct Arguments {
     /// web developers' programs leave too.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "false_positives", "study", "oracle"])]
     wild: Option<PathBuf>,
+    /// Instead of the grid: plain models whose surface is written otherwise, or has more beside it that is not seen; prints a table.
+    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild"])]
+    surface: bool,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -126,6 +130,10 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             &Seed::new(seed),
             real_tools(arguments, &target)?,
         );
+    }
+    if arguments.surface {
+        let (models, _) = models::all(arguments.models.as_deref())?;
+        return surface::table(models, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -1,10 +1,10 @@
 //! The attacks by name, each with the levels that tables show: one list for the lab, the command line, the tests and the page.
 
 use super::{
-    bake, bend, bilaplacian, catmull_clark, convert_units, crop, delaunay, into_scene, loop_scheme,
-    mean_curvature_flow, mean_filter, midpoint, mirror, noise, quantize, quantize_evenly, remesh,
-    reorder, resample, similarity, simplify, simplify_volume, smooth, smooth_inside, soup, split,
-    sqrt3, swap_axes, take_out, taubin, warp, weld,
+    bake, bend, bilaplacian, both_sides, catmull_clark, convert_units, copies, crop, delaunay,
+    hull, into_scene, loop_scheme, mean_curvature_flow, mean_filter, midpoint, mirror, noise,
+    quantize, quantize_evenly, remesh, reorder, resample, similarity, simplify, simplify_volume,
+    smooth, smooth_inside, soup, split, sqrt3, stray, swap_axes, take_out, taubin, warp, weld,
 };
 use crate::mesh::Mesh;
 use serde::Serialize;
@@ -277,6 +277,17 @@ pub static CATALOGUE: &[Attack] = &{
         attack("posed", Wild, " degrees", &[10.0, 30.0], |m, x, _| {
             bend(m, x)
         }),
+        attack("both sides", Wild, "", &[], |m, _, _| both_sides(m)),
+        attack("outline hull", Wild, " %", &[0.2, 2.0], |m, x, _| {
+            hull(m, x / 100.0)
+        }),
+        attack(
+            "stray triangle at",
+            Wild,
+            " diagonals",
+            &[10.0, 100.0],
+            |m, x, _| stray(m, x),
+        ),
         QUANTIZE_EVENLY,
         attack(
             "non-uniform scale",
@@ -287,6 +298,13 @@ pub static CATALOGUE: &[Attack] = &{
                 let scale = glam::DVec3::new(1.0 + x / 100.0, 1.0, 1.0 - x / 200.0);
                 m.with_positions(m.positions.iter().map(|p| *p * scale).collect())
             },
+        ),
+        attack(
+            "copied triangles",
+            Deliberate,
+            " %",
+            &[5.0, 100.0],
+            |m, x, seed| copies(m, x / 100.0, 1, 0.0, seed),
         ),
         attack(
             "warp",

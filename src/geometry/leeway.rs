@@ -12,6 +12,8 @@ pub struct Bounds {
     pub part: f64,
     /// How far a triangle may turn that is no sliver, in degrees.
     pub turn: f64,
+    /// How far any vertex may go, in scene units.
+    pub most: f64,
 }
 
 impl Bounds {
@@ -19,11 +21,13 @@ impl Bounds {
     pub const HIDDEN: Bounds = Bounds {
         part: 0.005,
         turn: 10.0,
+        most: f64::INFINITY,
     };
     /// Of a movement that may be seen by who looks for it.
     pub const STRONG: Bounds = Bounds {
         part: 0.01,
         turn: 20.0,
+        most: f64::INFINITY,
     };
 
     /// So many times as wide.
@@ -31,6 +35,7 @@ impl Bounds {
         Bounds {
             part: self.part * times,
             turn: self.turn * times,
+            ..self
         }
     }
 }
@@ -56,7 +61,7 @@ pub struct Leeway<'a> {
 impl<'a> Leeway<'a> {
     /// Looks at a mesh and its parts. O(V + F).
     pub fn new(mesh: &'a Mesh, parts: &Parts, bounds: Bounds) -> Leeway<'a> {
-        let mut reaches = vec![f64::INFINITY; mesh.positions.len()];
+        let mut reaches = vec![bounds.most; mesh.positions.len()];
         for (triangle, &part) in mesh.triangles.iter().zip(&parts.of_triangles) {
             for &vertex in triangle {
                 let reach = &mut reaches[vertex as usize];

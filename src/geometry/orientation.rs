@@ -4,7 +4,7 @@ use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
 /// A patch whose signed volume is smaller than this, times the area to the power 3/2, has no inside to speak of.
-const FLAT: f64 = 1e-3;
+const FLAT: f64 = 5e-5;
 
 /// The triangles of a mesh with consistent winding within each patch of two-faced edges, and each patch turned so that its
 /// signed volume about its own area centroid is positive; flat ones face as most of their area did.

@@ -2,9 +2,11 @@
 //!
 //! Parts whose boxes touch make an object: a figure and what it holds, a table's top and its
 //! legs. Neither depends on where the scene lies, on names or on nodes, so pieces are the same after joining, flattening and turning.
+//! An edge that more than two triangles meet at joins what was made apart: a shell on a bridge, a copy that shares some vertices. What hangs
+//! together without it is read alone too.
 
-use super::{Parts, Pose};
-use crate::mesh::{Mesh, Sets};
+use super::Pose;
+use crate::mesh::{Edges, Mesh, Sets};
 use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -26,23 +28,35 @@ const WIDE: f64 = 0.3;
 /// Triangles of a mesh that may have been a model.
 pub type Piece = Vec<[u32; 3]>;
 
-/// The objects of a mesh, and those of their parts that could hold a mark alone; of each, those that have most triangles first.
+/// The objects of a mesh, and those of their patches that could hold a mark alone; of each, those that have most triangles first.
 pub struct Pieces {
     /// None where the whole mesh is one object.
     pub objects: Vec<Piece>,
-    /// Those that are no objects themselves.
-    pub parts: Vec<Piece>,
+    /// What hangs together by edges of two triangles, where that is no object itself.
+    pub patches: Vec<Piece>,
 }
 
 impl Pieces {
     /// Finds them. O(V + F + P^2), P the number of parts, at most 512.
     pub fn of(mesh: &Mesh) -> Pieces {
-        let parts = parts(mesh);
+        let edges = Edges::new(mesh);
+        let parts = parts(mesh, &edges);
         let objects = objects_of(&boxes(mesh, &parts), 1.0);
-        let is_composed = |object: &&Vec<usize>| object.len() > 1;
-        let composed = objects.iter().filter(is_composed).flatten();
+        let patches = match edges.num_non_manifold() {
+            0 => edges.components(),
+            _ => edges.winding().patches,
+        };
+        let patches_of = |object: &Vec<usize>| {
+            let numbers = object.iter().flat_map(|&part| &parts[part]);
+            let mut patches_of = by_name(numbers.map(|&number| (patches[number as usize], number)));
+            if patches_of.len() == 1 {
+                patches_of.clear();
+            }
+            patches_of
+        };
+        let patches = objects.iter().flat_map(patches_of);
         Pieces {
-            parts: largest(composed.map(|&part| parts[part].clone()), mesh),
+            patches: largest(patches, mesh),
             objects: largest(objects.iter().map(|object| joined(object, &parts)), mesh),
         }
     }
@@ -50,7 +64,7 @@ impl Pieces {
     /// The objects alone that stay what they are where parts lie somewhat nearer to each other or farther apart, or have fewer
     /// triangles: those of a copy are the same.
     pub fn stable_objects(mesh: &Mesh) -> Vec<Piece> {
-        let parts = parts(mesh);
+        let parts = parts(mesh, &Edges::new(mesh));
         let boxes = boxes(mesh, &parts);
         let [tight, objects, loose] = [0.5, 1.0, 2.0].map(|slack| objects_of(&boxes, slack));
         let is_stable = |object: &&Vec<usize>| tight.contains(object) && loose.contains(object);
@@ -59,37 +73,57 @@ impl Pieces {
     }
 }
 
-fn joined(object: &[usize], parts: &[Piece]) -> Piece {
+/// Triangles by their numbers.
+type Part = Vec<u32>;
+
+fn joined(object: &[usize], parts: &[Part]) -> Part {
     let triangles = object.iter().flat_map(|&part| &parts[part]);
     triangles.copied().collect()
 }
 
 /// Those that have enough triangles and are not the whole mesh.
-fn largest(pieces: impl Iterator<Item = Piece>, mesh: &Mesh) -> Vec<Piece> {
+fn largest(pieces: impl Iterator<Item = Part>, mesh: &Mesh) -> Vec<Piece> {
     let sizes = LEAST_TRIANGLES..mesh.triangles.len();
-    let mut pieces: Vec<Piece> = pieces
+    let mut pieces: Vec<Part> = pieces
         .filter(|piece| sizes.contains(&piece.len()))
         .collect();
     pieces.sort_by_key(|piece| Reverse(piece.len()));
-    pieces
+    pieces.iter().map(|piece| corners(piece, mesh)).collect()
+}
+
+fn corners(part: &[u32], mesh: &Mesh) -> Piece {
+    let numbers = part.iter();
+    numbers
+        .map(|&number| mesh.triangles[number as usize])
+        .collect()
 }
 
 /// The triangles of each part, most first, no more parts than are compared; of equally many in the order of their first triangles.
-fn parts(mesh: &Mesh) -> Vec<Piece> {
-    let of_triangles = Parts::new(mesh).of_triangles;
-    let mut parts: BTreeMap<u32, Piece> = BTreeMap::new();
-    for (&triangle, part) in mesh.triangles.iter().zip(of_triangles) {
-        parts.entry(part).or_default().push(triangle);
-    }
-    let mut parts: Vec<Piece> = parts.into_values().collect();
+fn parts(mesh: &Mesh, edges: &Edges) -> Vec<Part> {
+    let mut parts = by_name(
+        edges
+            .components()
+            .into_iter()
+            .zip(0..mesh.triangles.len() as u32),
+    );
     parts.sort_by_key(|part| Reverse(part.len()));
     parts.truncate(MOST_PARTS);
     parts
 }
 
+/// The numbers of each name, names rising.
+fn by_name(named: impl Iterator<Item = (u32, u32)>) -> Vec<Part> {
+    let mut parts: BTreeMap<u32, Part> = BTreeMap::new();
+    for (name, number) in named {
+        parts.entry(name).or_default().push(number);
+    }
+    parts.into_values().collect()
+}
+
 /// The box about each part; none where it has no area.
-fn boxes(mesh: &Mesh, parts: &[Piece]) -> Vec<Option<Enclosing>> {
-    parts.iter().map(|part| Enclosing::of(mesh, part)).collect()
+fn boxes(mesh: &Mesh, parts: &[Part]) -> Vec<Option<Enclosing>> {
+    let boxed = |part: &Part| Enclosing::of(mesh.part(corners(part, mesh)));
+    parts.iter().map(boxed).collect()
 }
 
 /// The parts of each object, by their places. `slack` multiplies the limits, and is 1 but where it is asked whether they matter.
@@ -124,8 +158,7 @@ struct Enclosing {
 }
 
 impl Enclosing {
-    fn of(mesh: &Mesh, part: &[[u32; 3]]) -> Option<Enclosing> {
-        let part = mesh.part(part.iter().copied());
+    fn of(part: Mesh) -> Option<Enclosing> {
         let pose = Pose::of(&part)?;
         let axes = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
         let along = |axis: DVec3| {

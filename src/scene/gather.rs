@@ -2,7 +2,7 @@
 
 use super::{Count, Placement, Scene, SceneError, inverse, orbits};
 use crate::document::{Document, DocumentError, Node, Primitive, Transform};
-use crate::geometry::{Seams, seams};
+use crate::geometry::{Seams, seams, without_fins, without_repeats, without_strays};
 use crate::mesh::Mesh;
 use crate::order::order_by_words;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
@@ -268,6 +268,7 @@ impl Gathering {
         let Joined {
             mesh,
             parts,
+            strays,
             placements,
         } = self.join(|gathering, corner| gathering.not_finite(document, corner))?;
         let admissible = orbits::admissible(document, &placements, mesh.positions.len())?;
@@ -275,6 +276,7 @@ impl Gathering {
             mesh,
             admissible,
             parts,
+            strays,
             placements,
         };
         if scene.parts.is_some() {
@@ -364,6 +366,7 @@ impl Gathering {
             triangles: triangles.collect(),
             positions,
         };
+        let strays = leave_out(&mut mesh, &mut self.placements);
         let parts = close_seams(&mut mesh, &mut self.placements);
         if mesh.triangles.is_empty() {
             return Err(SceneError::NoTriangles);
@@ -371,6 +374,7 @@ impl Gathering {
         Ok(Joined {
             mesh,
             parts,
+            strays,
             placements: self.placements,
         })
     }
@@ -417,7 +421,62 @@ impl Gathering {
 struct Joined {
     mesh: Mesh,
     parts: Option<Vec<u32>>,
+    strays: Vec<[DVec3; 3]>,
     placements: Vec<Placement>,
+}
+
+/// Leaves out what a person does not see as the model: triangles that are there before, fins, strays. Gives back the strays.
+fn leave_out(mesh: &mut Mesh, placements: &mut [Placement]) -> Vec<[DVec3; 3]> {
+    if let Some(kept) = without_repeats(mesh) {
+        keep(&mut mesh.triangles, &kept);
+    }
+    let mut is_whole = true;
+    if let Some(kept) = without_fins(mesh) {
+        keep(&mut mesh.triangles, &kept);
+        is_whole = false;
+    }
+    let mut strays = Vec::new();
+    if let Some(kept) = without_strays(mesh) {
+        let triangles = mesh.triangles.iter().zip(&kept);
+        strays.extend(
+            triangles
+                .filter(|(_, kept)| !**kept)
+                .map(|(&t, _)| mesh.corners(t)),
+        );
+        keep(&mut mesh.triangles, &kept);
+        is_whole = false;
+    }
+    if !is_whole {
+        drop_unused(mesh, placements);
+    }
+    strays
+}
+
+fn keep<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| kept.next() == Some(&true));
+}
+
+/// Drops the vertices that no triangle has.
+fn drop_unused(mesh: &mut Mesh, placements: &mut [Placement]) {
+    let mut is_used = vec![false; mesh.positions.len()];
+    for &vertex in mesh.triangles.iter().flatten() {
+        if let Some(is_used) = is_used.get_mut(vertex as usize) {
+            *is_used = true;
+        }
+    }
+    let mut next = 0..;
+    let names: Vec<Option<u32>> = is_used
+        .iter()
+        .map(|&is_used| if is_used { next.next() } else { None })
+        .collect();
+    let name = |vertex: u32| names.get(vertex as usize).copied().flatten();
+    keep(&mut mesh.positions, &is_used);
+    let triangles = mesh.triangles.iter();
+    mesh.triangles = triangles.filter_map(|&t| renamed(t, name)).collect();
+    for vertex in placements.iter_mut().flat_map(|p| &mut p.vertices) {
+        *vertex = vertex.and_then(name);
+    }
 }
 
 /// Makes one vertex of those that a person sees as one; gives back the triangles' parts as they were before, where there were any.
@@ -445,11 +504,15 @@ fn close_seams(mesh: &mut Mesh, placements: &mut [Placement]) -> Option<Vec<u32>
     }
     let name = |vertex: u32| names.get(vertex as usize).copied();
     let triangles = mesh.triangles.iter().zip(parts);
-    let (triangles, parts) = triangles
+    let (triangles, mut parts): (_, Vec<u32>) = triangles
         .filter_map(|(&triangle, part)| Some((renamed(triangle, name)?, part)))
         .unzip();
     mesh.triangles = triangles;
     mesh.positions = positions;
+    if let Some(kept) = without_repeats(mesh) {
+        keep(&mut mesh.triangles, &kept);
+        keep(&mut parts, &kept);
+    }
     for vertex in placements.iter_mut().flat_map(|p| &mut p.vertices) {
         *vertex = vertex.and_then(name);
     }

@@ -24,7 +24,7 @@ pub use plain::to_glb;
 use crate::document::DocumentError;
 use crate::geometry::Parts;
 use crate::mesh::{Admissible, Mesh};
-use glam::{DAffine3, DMat3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// The most elements of position accessors that a scene may show, every instance counted. Small files can ask for more, by showing
 /// the same bytes many times.
@@ -137,6 +137,8 @@ pub struct Scene {
     pub admissible: Admissible,
     /// The parts of the triangles before seams were closed, where any were.
     parts: Option<Vec<u32>>,
+    /// The corners of triangles that lie far from the model, and are no part of the mesh.
+    pub strays: Vec<[DVec3; 3]>,
     placements: Vec<Placement>,
 }
 
@@ -158,6 +160,20 @@ impl Scene {
             Some(parts) => Parts::named(&self.mesh, parts.clone()),
             None => Parts::new(&self.mesh),
         }
+    }
+}
+
+impl Scene {
+    /// Where the strays lie, in a sentence for people; `None` without strays.
+    pub fn strays_in_words(&self) -> Option<String> {
+        let [first, _, _] = self.strays.first()?;
+        Some(format!(
+            "{} of the file's triangles lie far from the model, the first at ({}, {}, {}): they are left as they are, and its size is taken without them",
+            self.strays.len(),
+            first.x,
+            first.y,
+            first.z
+        ))
     }
 }
 

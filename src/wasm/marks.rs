@@ -29,7 +29,7 @@ pub fn embed(
     key: &[u8],
     options: JsValue,
 ) -> Result<Object, JsValue> {
-    let known = ["files", "strength", "carriers", "onProgress"];
+    let known = ["files", "strength", "carriers", "maxMovement", "onProgress"];
     let options = Options::new(options, &known)?;
     let (payload, key) = (payload_from(&payload)?, key_from(key)?);
     let (files, mut listener) = (options.files("files")?, options.listener()?);
@@ -207,6 +207,11 @@ fn embed_options_from(given: &Options) -> Result<EmbedOptions, JsValue> {
         options.strength = Strength::new(rms_rel).map_err(thrown)?;
     } else if !strength.is_undefined() {
         return Err(thrown(Error::Strength(format!("{strength:?}"))));
+    }
+    let max_movement = given.get("maxMovement");
+    if !max_movement.is_undefined() {
+        // What is no number is refused as one that is not positive.
+        options.max_movement = Some(max_movement.as_f64().unwrap_or(f64::NAN));
     }
     let carriers = given.get("carriers");
     if !carriers.is_undefined() {

@@ -35,6 +35,8 @@ export interface EmbedOptions extends MeasureOptions {
   strength?: Strength | undefined;
   /** Default: every carrier. One that the model is too small or too regular for is left out, if another can be used. */
   carriers?: Carrier[] | undefined;
+  /** How far a vertex may go at most, in scene units; positive. Default: as the strength allows. */
+  maxMovement?: number | undefined;
 }
 
 /**
@@ -140,6 +142,8 @@ export interface EmbedReport {
   /** Displacement over all vertices, as fractions of that diagonal. */
   rmsRel: number;
   maxRel: number;
+  /** The largest one in scene units: metres, where the file keeps to glTF's. */
+  maxMovement: number;
   /**
    * The farthest that a vertex went from where the mean movement of its part, what hangs together by edges, would have taken it, as a
    * fraction of the part's own diagonal; at most 0.01, at the strong strength 0.02. And the largest angle in degrees by which a triangle
@@ -187,6 +191,8 @@ export interface Inspection {
   primitives: number;
   nodes: number;
   extensionsUsed: string[];
+  /** What is strewn far from the model, in sentences: it is left out of all that is said here, and would not be marked. */
+  warnings: string[];
   sha256: string;
 }
 

@@ -59,6 +59,7 @@ fn embed_in(
                 marked,
                 written,
                 unshown,
+                strays,
             },
         read_back,
     } = match hold(&mut model, payload, key, options) {
@@ -79,10 +80,14 @@ fn embed_in(
         diagonal: diagonal(&host.positions),
         rms_rel: distortion.rms_rel,
         max_rel: distortion.max_rel,
+        max_movement: distortion.max_rel * diagonal(&host.positions),
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
         is_fragile,
-        warnings: warnings(&deformation, payload, is_fragile),
+        warnings: warnings(&deformation, payload, is_fragile)
+            .into_iter()
+            .chain(strays)
+            .collect(),
         strength: options.strength.rms_rel(),
         unshown,
         read_back,

@@ -61,6 +61,9 @@ pub enum Error {
         "strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}"
     )]
     Strength(String),
+    /// A largest movement that is no positive number.
+    #[error("the largest movement is a positive number of scene units, not {0}")]
+    MaxMovement(String),
     /// No carrier was chosen.
     #[error("no carrier was chosen")]
     NoCarrier,
@@ -113,6 +116,7 @@ impl Error {
             Error::Text(error) => error.code(),
             Error::Evidence(error) => error.code(),
             Error::Strength(_) => "options.strength",
+            Error::MaxMovement(_) => "options.max-movement",
             Error::NoCarrier => "options.no-carrier",
             Error::Unreadable { .. } => "watermark.unreadable",
             Error::Refused { refusal, .. } => refusal.code(),

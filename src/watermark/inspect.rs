@@ -38,6 +38,8 @@ pub struct Inspection {
     pub nodes: usize,
     /// As the document says.
     pub extensions_used: Vec<String>,
+    /// What is strewn far from the model, in sentences: it is left out of all that is said here, and would not be marked.
+    pub warnings: Vec<String>,
     /// SHA-256 of the main file.
     pub sha256: String,
 }
@@ -50,7 +52,9 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
     let mut model = model.into();
     model.step(Stage::Read, 0.0)?;
     let document = Document::read(model.bytes, model.files)?;
-    let mesh = Scene::gather(&document)?.mesh;
+    let scene = Scene::gather(&document)?;
+    let warnings = scene.strays_in_words().into_iter().collect();
+    let mesh = scene.mesh;
     model.step(Stage::Measure, 0.0)?;
     let edges = Edges::new(&mesh);
     Ok(Inspection {
@@ -73,6 +77,7 @@ pub fn inspect<'a>(model: impl Into<Model<'a>>) -> Result<Inspection, Error> {
             .sum(),
         nodes: document.num_stated_nodes(),
         extensions_used: document.extensions_used().to_vec(),
+        warnings,
         sha256: sha256(model.bytes),
     })
 }

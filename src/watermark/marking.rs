@@ -76,6 +76,8 @@ pub(super) struct Marked {
     pub marked: Mesh,
     pub written: Written,
     pub unshown: Vec<Unshown>,
+    /// Where strays lie, in words.
+    pub strays: Option<String>,
 }
 
 /// Reads, displaces and writes.
@@ -100,13 +102,14 @@ fn mark(
         codeword: &codeword,
     };
     let parts = scene.parts();
-    let leeway = Leeway::new(&scene.mesh, &parts, options.strength.bounds());
+    let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
     let displacement = displacement(&scene, &leeway, &mark, payload.is_some(), options, model)?;
 
     model.step(Stage::Write, 0.0)?;
     let positions = write(model, &mut document, &scene, &leeway, displacement)?.positions;
     drop(leeway);
     let unshown = mark_unshown(model, &mut document, &scene, &mark, payload, options)?;
+    let strays = scene.strays_in_words();
     let host = scene.mesh;
     let written = document.write()?;
     drop(document);
@@ -118,5 +121,6 @@ fn mark(
         marked,
         written,
         unshown,
+        strays,
     })
 }

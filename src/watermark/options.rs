@@ -12,6 +12,8 @@ pub struct EmbedOptions {
     pub strength: Strength,
     /// Which carriers to use, in any order; repetitions do not matter. Default: all.
     pub carriers: Vec<Carrier>,
+    /// How far a vertex may go at most, in scene units: metres, where the file keeps to glTF's. Positive. Default: as the strength allows.
+    pub max_movement: Option<f64>,
 }
 
 impl Default for EmbedOptions {
@@ -19,6 +21,7 @@ impl Default for EmbedOptions {
         EmbedOptions {
             strength: Strength::BALANCED,
             carriers: Carrier::ALL.to_vec(),
+            max_movement: None,
         }
     }
 }
@@ -27,6 +30,27 @@ impl EmbedOptions {
     /// The same with a strength.
     pub fn with_strength(self, strength: Strength) -> EmbedOptions {
         EmbedOptions { strength, ..self }
+    }
+
+    /// How far vertices may go.
+    ///
+    /// # Errors
+    /// [`Error::MaxMovement`] where that is no positive number.
+    pub(super) fn bounds(&self) -> Result<Bounds, Error> {
+        let bounds = self.strength.bounds();
+        match self.max_movement {
+            None => Ok(bounds),
+            Some(most) if most > 0.0 => Ok(Bounds { most, ..bounds }),
+            Some(other) => Err(Error::MaxMovement(other.to_string())),
+        }
+    }
+
+    /// The same with a largest movement, in scene units.
+    pub fn with_max_movement(self, max_movement: f64) -> EmbedOptions {
+        EmbedOptions {
+            max_movement: Some(max_movement),
+            ..self
+        }
     }
 
     /// The same with these carriers alone.
@@ -92,7 +116,7 @@ impl Strength {
 
     /// How far a vertex may go by its part and its triangles. What is stronger than strong may go farther in proportion, for somebody
     /// insists.
-    pub(super) fn bounds(self) -> Bounds {
+    fn bounds(self) -> Bounds {
         if self.hidden {
             return Bounds::HIDDEN;
         }

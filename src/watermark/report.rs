@@ -163,6 +163,8 @@ pub struct EmbedReport {
     pub rms_rel: f64,
     /// Maximum displacement, as a fraction of that diagonal.
     pub max_rel: f64,
+    /// The same in scene units: metres, where the file keeps to glTF's.
+    pub max_movement: f64,
     /// The farthest that a vertex went from where the mean movement of its part, what hangs together by edges, would have taken it, as a
     /// fraction of the part's own diagonal. At most 0.01 at the subtle and balanced strengths, 0.02 at the strong one.
     pub worst_part_rel: f64,
@@ -171,7 +173,8 @@ pub struct EmbedReport {
     pub worst_turn_degrees: f64,
     /// Whether rounding positions as web pipelines do takes the mark: the forecast `web` is red.
     pub is_fragile: bool,
-    /// What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen.
+    /// What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen, what is strewn far from
+    /// the model.
     pub warnings: Vec<String>,
     /// The strength that was asked for.
     pub strength: f64,

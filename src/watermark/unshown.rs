@@ -60,7 +60,7 @@ fn marked(
     let Ok(scene) = Scene::of_mesh(&document, mesh) else {
         return Ok(None);
     };
-    let leeway = Leeway::new(&scene.mesh, &scene.parts(), options.strength.bounds());
+    let leeway = Leeway::new(&scene.mesh, &scene.parts(), options.bounds()?);
     let displacement = match displacement(&scene, &leeway, mark, payload.is_some(), options, model)
     {
         Err(refusal) if refusal.is_of_the_model() => return Ok(None),

@@ -260,11 +260,11 @@ fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
 
 /// Keys against a mesh and each of its pieces alone, as they are.
 fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
-    let Pieces { objects, parts } = Pieces::of(mesh);
-    assert!(!objects.is_empty() && !parts.is_empty(), "{name}");
+    let Pieces { objects, patches } = Pieces::of(mesh);
+    assert!(!objects.is_empty() && !patches.is_empty(), "{name}");
     let pieces = objects
         .into_iter()
-        .chain(parts)
+        .chain(patches)
         .map(|piece| mesh.part(piece));
     let all = std::iter::once(mesh.clone()).chain(pieces);
     let plain = all.flat_map(|piece| solid::Surfaces::new(&piece).plain());

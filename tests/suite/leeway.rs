@@ -98,6 +98,22 @@ fn leeway_a_number_beyond_strong_warns() {
     assert!(report.warnings[0].contains(&part), "{:?}", report.warnings);
 }
 
+/// A limit in scene units holds after rounding, and is what the report says.
+#[wasm_bindgen_test(unsupported = test)]
+fn leeway_keeps_to_a_largest_movement() {
+    let rock = to_glb(&shapes::asteroid(40, 60));
+    let most = |options: &EmbedOptions| embed(&rock, payload(), &key(1), options).unwrap().report;
+    let options = EmbedOptions::default().with_strength(Strength::STRONG);
+    let free = most(&options);
+    let (reach, diagonal) = (0.5 * free.max_movement, free.diagonal);
+    assert!((free.max_movement - free.max_rel * diagonal).abs() < 1e-12);
+    let held = most(&options.with_max_movement(reach));
+    assert!(
+        held.max_movement <= reach && held.max_movement > 0.9 * reach,
+        "{held:?}"
+    );
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn leeway_holds_for_notes() {
     let host = to_glb(&Mesh::joined([scene(), shapes::asteroid(60, 80)]));

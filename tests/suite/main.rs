@@ -18,6 +18,7 @@ mod floors;
 mod geometry;
 mod golden;
 mod key;
+mod layers;
 mod leeway;
 mod levels;
 mod mesh;

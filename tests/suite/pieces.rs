@@ -45,7 +45,7 @@ fn sizes(pieces: &[Vec<[u32; 3]>]) -> Vec<usize> {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
-fn pieces_are_what_touches_and_its_parts() {
+fn pieces_are_what_touches_and_its_patches() {
     let [body, hat, stone] =
         [(24, 36), (12, 18), (10, 14)].map(|(a, b)| shapes::asteroid(a, b).triangles.len());
     let scene = figure_and_stone();
@@ -59,7 +59,7 @@ fn pieces_are_what_touches_and_its_parts() {
     ] {
         let pieces = Pieces::of(&scene);
         assert_eq!(sizes(&pieces.objects), [body + hat, stone], "{name}");
-        assert_eq!(sizes(&pieces.parts), [body, hat], "{name}");
+        assert_eq!(sizes(&pieces.patches), [body, hat], "{name}");
         assert_eq!(
             sizes(&Pieces::stable_objects(&scene)),
             [body + hat, stone],
@@ -72,7 +72,7 @@ fn pieces_are_what_touches_and_its_parts() {
 #[wasm_bindgen_test(unsupported = test)]
 fn pieces_of_one_object_are_none() {
     let pieces = Pieces::of(&shapes::asteroid(24, 36));
-    assert!(pieces.objects.is_empty() && pieces.parts.is_empty());
+    assert!(pieces.objects.is_empty() && pieces.patches.is_empty());
 }
 
 /// Objects that touch only just are not told apart for certain.

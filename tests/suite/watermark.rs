@@ -354,6 +354,11 @@ fn options_out_of_range_are_refused() {
     let options = EmbedOptions::default().with_carriers([]);
     let error = embed(&demo_model(), payload(), &key(1), &options).unwrap_err();
     assert_eq!(error.code(), "options.no-carrier");
+    for most in [0.0, -1.0, f64::NAN] {
+        let options = EmbedOptions::default().with_max_movement(most);
+        let error = embed(&demo_model(), payload(), &key(1), &options).unwrap_err();
+        assert_eq!(error.code(), "options.max-movement", "{most}");
+    }
     assert_eq!(Carrier::from_name("ring"), Some(Carrier::Ring));
     assert_eq!(Carrier::from_name("rings"), None);
 }

@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress};
 use std::borrow::Cow;
 
-/// Pieces that are read alone, at most: objects first, then parts, those of most triangles.
+/// Pieces that are read alone, at most: objects first, then patches, those of most triangles.
 const MOST_PIECES: usize = 16;
 
 /// Key-free measurement of a mesh: all its surfaces, then those of each of its pieces. Each begins with what it is.
@@ -167,12 +167,12 @@ impl Suspect {
 
 /// What is read alone of a mesh.
 fn pieces_of(mesh: &Mesh) -> impl Iterator<Item = Surfaces> {
-    let Pieces { objects, parts } = Pieces::of(mesh);
+    let Pieces { objects, patches } = Pieces::of(mesh);
     let of = |piece: Piece| Surfaces::new(&mesh.part(piece));
-    // A part is read alone for the sake of what was put beside it, and that smooths nothing.
-    let of_part = move |part| of(part).plain();
+    // A patch is read alone for the sake of what was put beside it, and that smooths nothing.
+    let of_patch = move |patch| of(patch).plain();
     let objects = objects.into_iter().map(of);
     objects
-        .chain(parts.into_iter().map(of_part))
+        .chain(patches.into_iter().map(of_patch))
         .take(MOST_PIECES)
 }

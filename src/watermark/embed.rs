@@ -99,7 +99,7 @@ fn embed_in(
         max_rel: distortion.max_rel,
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
-        warnings: warnings(&deformation),
+        warnings: [warnings(&deformation), unpacked(&written)].concat(),
         strength: options.strength.rms_rel(),
         read_back,
         forecast,
@@ -111,6 +111,15 @@ fn embed_in(
         files: written.files,
         report,
     })
+}
+
+/// What is said of a model that is not compressed as its host was.
+pub(super) fn unpacked(written: &Written) -> Vec<String> {
+    let extensions = written.unpacked.iter();
+    let words = extensions.map(|name| {
+        format!("the host is compressed ({name}), and the copy is not: compress it again, and check what comes of it")
+    });
+    words.collect()
 }
 
 /// What may be seen of a deformation: more than the strong strength's.

@@ -62,7 +62,7 @@ pub use scene::SceneError;
 pub use watermark::{
     CarrierCapacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
     Extraction, Forecast, Input, Inspection, Level, Model, NoteEmbedding, NoteReading, NoteReport,
-    NoteSize, Strength, Surface, Suspect, Verdict, detect, embed, embed_note, extract,
+    NoteSize, Strength, Surface, Suspect, Verdict, decompress, detect, embed, embed_note, extract,
     extract_many, file_names, inspect, measure, note_capacity, read_note, verify,
 };
 

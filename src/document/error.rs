@@ -124,8 +124,8 @@ pub enum DocumentError {
     },
     /// Compressed geometry.
     #[error(
-        "the model's geometry is compressed ({name}): decompress it first, for example with \
-         `gltf-transform copy in.glb out.glb`"
+        "the model's geometry is compressed ({name}), and what reads it is not loaded: in JavaScript call initCodecs() first; or \
+         decompress it, for example with `gltf-transform copy in.glb out.glb`"
     )]
     CompressionUnsupported {
         /// The place where compression is asked for.

@@ -213,18 +213,27 @@ impl Document {
     ///
     /// [`DocumentError::TooLarge`] if new `min` and `max` make a GLB file exceed 4 GiB.
     pub fn write(&self) -> Result<Written, DocumentError> {
-        let changed: Vec<Option<&[u8]>> = self.storages.iter().map(Storage::changed).collect();
-        if let Some(packed) = self
-            .packed
-            .as_ref()
-            .filter(|_| changed.iter().all(Option::is_none))
-        {
-            return Ok(Written {
+        let is_changed = self
+            .storages
+            .iter()
+            .any(|storage| storage.changed().is_some());
+        match &self.packed {
+            Some(packed) if !is_changed => Ok(Written {
                 model: packed.model.clone(),
                 files: Files::new(),
                 unpacked: Vec::new(),
-            });
+            }),
+            _ => self.write_plain(),
         }
+    }
+
+    /// Writes the document as [`write`](Self::write) does, but without compression even if nothing changed.
+    ///
+    /// # Errors
+    ///
+    /// As [`write`](Self::write).
+    pub fn write_plain(&self) -> Result<Written, DocumentError> {
+        let changed: Vec<Option<&[u8]>> = self.storages.iter().map(Storage::changed).collect();
         let has_changed =
             |region: &Region| changed.get(region.storage).is_some_and(Option::is_some);
         let mut splice = Splice::new(&self.text);

@@ -124,14 +124,22 @@ pub enum DocumentError {
     },
     /// Compressed geometry.
     #[error(
-        "the model's geometry is compressed ({name}): decompress it first, for example with \
-         `gltf-transform copy in.glb out.glb`"
+        "the model's geometry is compressed ({name}), and what reads it is not loaded: in JavaScript call initCodecs() first; or \
+         decompress it, for example with `gltf-transform copy in.glb out.glb`"
     )]
     CompressionUnsupported {
         /// The place where compression is asked for.
         pointer: String,
         /// The extension.
         name: String,
+    },
+    /// Compressed geometry that no decoder makes sense of.
+    #[error("the model's compressed geometry is damaged: {detail}")]
+    BadCompression {
+        /// Where the compression is stated.
+        pointer: String,
+        /// What is wrong.
+        detail: String,
     },
     /// An external buffer that was not handed in.
     #[error(
@@ -217,6 +225,7 @@ impl DocumentError {
             Self::CyclicNodes { .. } => "document.cyclic-nodes",
             Self::ExtensionUnsupported { .. } => "document.extension-unsupported",
             Self::CompressionUnsupported { .. } => "document.compression-unsupported",
+            Self::BadCompression { .. } => "document.bad-compression",
             Self::MissingFile { .. } => "document.missing-file",
             Self::MissingData { .. } => "document.missing-data",
             Self::BadDataUri { .. } => "document.bad-data-uri",
@@ -244,6 +253,7 @@ impl DocumentError {
             | Self::CyclicNodes { pointer, .. }
             | Self::ExtensionUnsupported { pointer, .. }
             | Self::CompressionUnsupported { pointer, .. }
+            | Self::BadCompression { pointer, .. }
             | Self::MissingFile { pointer, .. }
             | Self::MissingData { pointer, .. }
             | Self::BadDataUri { pointer, .. }

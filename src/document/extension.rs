@@ -7,7 +7,7 @@ use std::fmt;
 use super::DocumentError;
 use super::schema::Root;
 
-/// Extensions that store geometry in compressed form. They are refused even where a plain copy of
+/// Extensions that store geometry in compressed form. Where no codec has taken them out, they are refused, even if a plain copy of
 /// the data accompanies the compressed one, since a mark in one of two copies would be wrong.
 const COMPRESSION: &[&str] = &[
     "KHR_draco_mesh_compression",
@@ -73,17 +73,24 @@ const ACCEPTED: &[&str] = &[
     "CESIUM_RTC",
 ];
 
-/// Refuses compressed geometry and required extensions that are not known to be harmless.
-pub(super) fn check(root: &Root) -> Result<(), DocumentError> {
+/// Refuses required extensions that are not known to be harmless. What [`check_compression`] is for passes.
+pub(super) fn check_required(root: &Root) -> Result<(), DocumentError> {
     for (index, name) in root.extensions_required.iter().enumerate() {
-        let pointer = format_args!("/extensionsRequired/{index}");
-        refuse_compression(name, pointer)?;
-        if !ACCEPTED.iter().any(|accepted| name.starts_with(accepted)) {
+        let is_accepted = ACCEPTED.iter().any(|accepted| name.starts_with(accepted));
+        if !is_accepted && !COMPRESSION.contains(&name.as_str()) {
             return Err(DocumentError::ExtensionUnsupported {
-                pointer: pointer.to_string(),
+                pointer: format!("/extensionsRequired/{index}"),
                 name: name.clone(),
             });
         }
+    }
+    Ok(())
+}
+
+/// Refuses compressed geometry.
+pub(super) fn check_compression(root: &Root) -> Result<(), DocumentError> {
+    for (index, name) in root.extensions_required.iter().enumerate() {
+        refuse_compression(name, format_args!("/extensionsRequired/{index}"))?;
     }
     for (index, view) in root.buffer_views.iter().enumerate() {
         for name in view.extensions.keys() {

@@ -9,8 +9,9 @@
 //!
 //! The module knows bytes and numbers, not geometry. The schema is read through types of its own
 //! which borrow from the text (`schema.rs` says why), with the `gltf` crate's enumerations.
-//! `KHR_mesh_quantization`, which that crate refuses, is read here; compressed geometry and required
-//! extensions that may concern positions are refused.
+//! `KHR_mesh_quantization`, which that crate refuses, is read here; required extensions that may concern
+//! positions are refused. Compressed geometry (feature `codec`) is read as the plain document that it stands
+//! for, and written so if it changed.
 //!
 //! All offsets and lengths of the file are checked while reading, before anything is allocated for
 //! them, so the memory used is a small multiple of the input's size; what the file can ask for without
@@ -27,6 +28,8 @@
 mod accessor;
 mod bounds;
 mod buffer;
+#[cfg(feature = "codec")]
+mod codec;
 mod container;
 mod data_uri;
 mod error;
@@ -69,6 +72,8 @@ pub struct Written {
     pub model: Vec<u8>,
     /// The external buffers that changed, by the names they were handed in with.
     pub files: Files,
+    /// The compression that the file had and has no more: of a document that changed, all of it.
+    pub unpacked: Vec<&'static str>,
 }
 
 /// The values that the components of an accessor's positions can take.
@@ -102,6 +107,13 @@ pub struct Document {
     roots: Vec<usize>,
     num_stated_nodes: usize,
     tail: Vec<u8>,
+    packed: Option<Packed>,
+}
+
+/// What a document was read from, if its geometry was compressed: the rest of it is a plain one.
+struct Packed {
+    model: Vec<u8>,
+    extensions: Vec<&'static str>,
 }
 
 impl Document {
@@ -116,9 +128,26 @@ impl Document {
     /// [`triangles`](Self::triangles).
     pub fn read(model: &[u8], files: &Files) -> Result<Self, DocumentError> {
         let parts = container::split(model)?;
+        #[cfg(feature = "codec")]
+        if let Some(unpacked) = codec::unpacked(&parts, files)? {
+            let packed = Packed {
+                model: model.to_vec(),
+                extensions: unpacked.extensions,
+            };
+            return Self::of_parts(unpacked.parts, &unpacked.files, Some(packed));
+        }
+        Self::of_parts(parts, files, None)
+    }
+
+    fn of_parts(
+        parts: container::Parts,
+        files: &Files,
+        packed: Option<Packed>,
+    ) -> Result<Self, DocumentError> {
         let text = parts.text;
         let root = Root::parse(&text)?;
-        extension::check(&root)?;
+        extension::check_compression(&root)?;
+        extension::check_required(&root)?;
         let (storages, buffers) = buffer::resolve(&root, &text, parts.binary, files)?;
         let views = region::views(&root, &buffers)?;
         let accessors = accessor::read(&root, &text, &views)?;
@@ -133,7 +162,9 @@ impl Document {
         for accessor in accessors.iter().filter(is_sparse_position) {
             accessor.slots(&storages)?;
         }
-        let extensions_used = root.extensions_used;
+        let mut extensions_used = root.extensions_used;
+        let unpacked = packed.iter().flat_map(|packed| &packed.extensions);
+        extensions_used.extend(unpacked.map(ToString::to_string));
         Ok(Self {
             container: parts.container,
             text,
@@ -147,6 +178,7 @@ impl Document {
             roots,
             num_stated_nodes,
             tail: parts.tail,
+            packed,
         })
     }
 
@@ -158,7 +190,9 @@ impl Document {
     pub fn file_names(model: &[u8]) -> Result<Vec<String>, DocumentError> {
         let parts = container::split(model)?;
         let root = Root::parse(&parts.text)?;
-        extension::check(&root)?;
+        #[cfg(not(feature = "codec"))]
+        extension::check_compression(&root)?;
+        extension::check_required(&root)?;
         buffer::file_names(&root)
     }
 
@@ -179,6 +213,26 @@ impl Document {
     ///
     /// [`DocumentError::TooLarge`] if new `min` and `max` make a GLB file exceed 4 GiB.
     pub fn write(&self) -> Result<Written, DocumentError> {
+        let is_changed = self
+            .storages
+            .iter()
+            .any(|storage| storage.changed().is_some());
+        match &self.packed {
+            Some(packed) if !is_changed => Ok(Written {
+                model: packed.model.clone(),
+                files: Files::new(),
+                unpacked: Vec::new(),
+            }),
+            _ => self.write_plain(),
+        }
+    }
+
+    /// Writes the document as [`write`](Self::write) does, but without compression even if nothing changed.
+    ///
+    /// # Errors
+    ///
+    /// As [`write`](Self::write).
+    pub fn write_plain(&self) -> Result<Written, DocumentError> {
         let changed: Vec<Option<&[u8]>> = self.storages.iter().map(Storage::changed).collect();
         let has_changed =
             |region: &Region| changed.get(region.storage).is_some_and(Option::is_some);
@@ -206,6 +260,10 @@ impl Document {
                 (Origin::File(name), Some(bytes)) => {
                     files.insert(name.clone(), bytes.to_vec());
                 }
+                // A file of plain data, that nobody has yet.
+                (Origin::File(name), None) if self.packed.is_some() => {
+                    files.insert(name.clone(), storage.bytes().to_vec());
+                }
                 (_, None) => {}
             }
         }
@@ -214,7 +272,15 @@ impl Document {
             container::pad(&mut text);
         }
         let model = container::join(self.container, &text, binary, &self.rest, &self.tail)?;
-        Ok(Written { model, files })
+        let unpacked = self
+            .packed
+            .as_ref()
+            .map_or(&[][..], |packed| &packed.extensions);
+        Ok(Written {
+            model,
+            files,
+            unpacked: unpacked.to_vec(),
+        })
     }
 
     /// How the model file is packed.

@@ -270,7 +270,7 @@ impl Gathering {
             parts,
             strays,
             placements,
-        } = self.join(|gathering, corner| gathering.not_finite(document, corner))?;
+        } = self.join(&|gathering, corner| gathering.not_finite(document, corner))?;
         let admissible = orbits::admissible(document, &placements, mesh.positions.len())?;
         let mut scene = Scene {
             mesh,
@@ -288,7 +288,7 @@ impl Gathering {
     /// Makes vertices of elements; `not_finite` says what is wrong where a corner is nowhere.
     fn join(
         mut self,
-        not_finite: impl Fn(&Gathering, (u32, u32)) -> SceneError,
+        not_finite: &dyn Fn(&Gathering, (u32, u32)) -> SceneError,
     ) -> Result<Joined, SceneError> {
         let corners = || {
             self.triangles
@@ -396,7 +396,7 @@ impl Gathering {
 
     /// The mesh of a surface: as a document with the same elements would have it.
     pub(super) fn surface(self, positions: &[[f64; 3]]) -> Result<Mesh, SceneError> {
-        let joined = self.join(|_, (_, vertex)| SceneError::NotANumber { vertex })?;
+        let joined = self.join(&|_, (_, vertex)| SceneError::NotANumber { vertex })?;
         let mut mesh = joined.mesh;
         if joined.parts.is_some() {
             let mut is_placed = vec![false; mesh.positions.len()];

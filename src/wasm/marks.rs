@@ -3,7 +3,7 @@
 use super::options::Options;
 use super::{argument, encoded, set, thrown};
 use crate::watermark::{self, Error, Strength};
-use crate::{Carrier, EmbedOptions, Evidence, Extraction, Key, Model, Payload};
+use crate::{Carrier, EmbedOptions, Evidence, Extraction, Files, Key, Model, Payload, Surface};
 use js_sys::{Array, JsString, Object, Uint8Array};
 use wasm_bindgen::prelude::*;
 use zeroize::Zeroizing;
@@ -38,19 +38,18 @@ pub fn embed(
         .with_files(&files)
         .with_progress(&mut listener);
     let embedding = watermark::embed(model, payload, &key, &options).map_err(thrown)?;
-    let marked_files = Object::new();
-    for (name, bytes) in &embedding.files {
-        set(&marked_files, name, &Uint8Array::from(bytes.as_slice()))?;
-    }
-    let result = Object::new();
-    set(
-        &result,
-        "model",
-        &Uint8Array::from(embedding.model.as_slice()),
-    )?;
-    set(&result, "files", &marked_files)?;
+    let result = model_to(&embedding.model, &embedding.files)?;
     set(&result, "report", &encoded(&embedding.report)?)?;
     Ok(result)
+}
+
+/// A model without compression.
+#[wasm_bindgen(skip_typescript)]
+pub fn decompress(model: &[u8], options: JsValue) -> Result<Object, JsValue> {
+    let files = Options::new(options, &["files"])?.files("files")?;
+    let plain = watermark::decompress(Model::new(model).with_files(&files));
+    let (model, files) = plain.map_err(thrown)?;
+    model_to(&model, &files)
 }
 
 /// Measures a suspect.
@@ -70,18 +69,44 @@ pub fn measure(model: &[u8], options: JsValue) -> Result<Vec<u8>, JsValue> {
 pub fn detect(model: &[u8], key: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
     let known = ["files", "expected", "details", "onProgress"];
     let options = Options::new(options, &known)?;
-    let key = key_from(key)?;
-    let expected = options.get("expected");
-    let expected = match expected.is_undefined() {
-        true => None,
-        false => Some(payload_from(&expected)?),
-    };
+    let (key, expected) = (key_from(key)?, expected_from(&options)?);
     let is_for_owner = options.is_set("details")?;
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let model = Model::new(model)
         .with_files(&files)
         .with_progress(&mut listener);
     let extraction = watermark::detect(model, &key, expected).map_err(thrown)?;
+    told(extraction, is_for_owner)
+}
+
+/// Measures a suspect that is no glTF.
+#[wasm_bindgen(js_name = measureMesh, skip_typescript)]
+pub fn measure_mesh(
+    positions: &[f64],
+    triangles: &[u32],
+    options: JsValue,
+) -> Result<Vec<u8>, JsValue> {
+    let mut listener = Options::new(options, &["onProgress"])?.listener()?;
+    let (positions, triangles) = surface_from(positions, triangles)?;
+    let surface = Surface::new(positions, triangles).with_progress(&mut listener);
+    Ok(watermark::measure(surface).map_err(thrown)?.to_bytes())
+}
+
+/// Reads a suspect that is no glTF.
+#[wasm_bindgen(js_name = detectMesh, skip_typescript)]
+pub fn detect_mesh(
+    positions: &[f64],
+    triangles: &[u32],
+    key: &[u8],
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["expected", "details", "onProgress"])?;
+    let (key, expected) = (key_from(key)?, expected_from(&options)?);
+    let is_for_owner = options.is_set("details")?;
+    let mut listener = options.listener()?;
+    let (positions, triangles) = surface_from(positions, triangles)?;
+    let surface = Surface::new(positions, triangles).with_progress(&mut listener);
+    let extraction = watermark::detect(surface, &key, expected).map_err(thrown)?;
     told(extraction, is_for_owner)
 }
 
@@ -194,6 +219,38 @@ fn payload_from(value: &JsValue) -> Result<Payload, JsValue> {
         _ => Payload::from_number(u64::MAX),
     };
     payload.map_err(Error::from).map_err(thrown)
+}
+
+/// The payload that is looked for, if one is.
+fn expected_from(options: &Options) -> Result<Option<Payload>, JsValue> {
+    let expected = options.get("expected");
+    match expected.is_undefined() {
+        true => Ok(None),
+        false => payload_from(&expected).map(Some),
+    }
+}
+
+/// Numbers by threes; a rest is refused.
+fn surface_from<'a>(
+    positions: &'a [f64],
+    triangles: &'a [u32],
+) -> Result<(&'a [[f64; 3]], &'a [[u32; 3]]), JsValue> {
+    match (positions.as_chunks(), triangles.as_chunks()) {
+        ((positions, []), (triangles, [])) => Ok((positions, triangles)),
+        _ => Err(argument("positions and triangles have three numbers each")),
+    }
+}
+
+/// A model and its files.
+fn model_to(model: &[u8], files: &Files) -> Result<Object, JsValue> {
+    let named = Object::new();
+    for (name, bytes) in files {
+        set(&named, name, &Uint8Array::from(bytes.as_slice()))?;
+    }
+    let result = Object::new();
+    set(&result, "model", &Uint8Array::from(model))?;
+    set(&result, "files", &named)?;
+    Ok(result)
 }
 
 fn embed_options_from(given: &Options) -> Result<EmbedOptions, JsValue> {

@@ -30,6 +30,12 @@ export interface MeasureOptions extends InspectOptions {
   onProgress?: OnProgress | undefined;
 }
 
+/** Of a suspect that is no glTF. */
+export interface MeasureMeshOptions {
+  /** Default: nobody is told. */
+  onProgress?: OnProgress | undefined;
+}
+
 export interface EmbedOptions extends MeasureOptions {
   /** Default: `balanced`. */
   strength?: Strength | undefined;
@@ -85,6 +91,11 @@ export interface DetectOptions extends MeasureOptions, ReadOptions {
    * A payload to test for, which makes the test stronger. It must not come from the suspect; payloads that are tried in turn add up,
    * as keys do. Default: none; the payload is read.
    */
+  expected?: Payload | undefined;
+}
+
+/** As `DetectOptions`, of a suspect that is no glTF. */
+export interface DetectMeshOptions extends MeasureMeshOptions, ReadOptions {
   expected?: Payload | undefined;
 }
 
@@ -153,7 +164,10 @@ export interface EmbedReport {
   worstTurnDegrees: number;
   /** Whether rounding positions as web pipelines do takes the mark: the forecast "web" is red. */
   isFragile: boolean;
-  /** What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen. */
+  /**
+   * What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen; and what
+   * is strewn far from the model, and what the copy lacks of its host (its compression).
+   */
   warnings: string[];
   strength: number;
   /** Meshes that no scene shows, by their place in the file's list: levels of detail, and what is left over; and whether they were marked, each alone. */
@@ -172,6 +186,14 @@ export interface Embedding {
   /** The external buffers that changed, under the names they were handed in with. */
   files: Files;
   report: EmbedReport;
+}
+
+/** A model without compression. */
+export interface Decompressed {
+  /** The main file: what was given, if nothing in it is compressed. */
+  model: Uint8Array;
+  /** The external buffers that differ from those that were given. */
+  files: Files;
 }
 
 /** What a model is made of. */
@@ -242,6 +264,18 @@ export function verify(evidence: Uint8Array, key: Uint8Array, expected: Payload,
  * reports the fraction of hypotheses tried.
  */
 export function detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions): Extraction;
+
+/**
+ * As `measure`, of a suspect in any other format: x, y and z of each vertex, and the three vertices of each triangle by their index.
+ * Units and axes do not matter, nor whether triangles share their vertices; it must not be mirrored.
+ */
+export function measureMesh(positions: Float64Array, triangles: Uint32Array, options?: MeasureMeshOptions): Uint8Array;
+
+/** As `detect`, of a suspect in any other format: see `measureMesh`. */
+export function detectMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, options?: DetectMeshOptions): Extraction;
+
+/** A model whose geometry is not compressed, for viewers that know no codecs. */
+export function decompress(model: Uint8Array, options?: InspectOptions): Decompressed;
 
 /** Describes a model, without a key. */
 export function inspect(model: Uint8Array, options?: InspectOptions): Inspection;

@@ -6,7 +6,7 @@ use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold};
 use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
 use crate::bits::Payload;
 use crate::digest::sha256;
-use crate::document::{Document, Files};
+use crate::document::{Document, Files, Written};
 use crate::geometry::{Bounds, Deformation, Distortion, diagonal};
 use crate::key::Key;
 use crate::scene::Scene;
@@ -87,6 +87,7 @@ fn embed_in(
         warnings: warnings(&deformation, payload, is_fragile)
             .into_iter()
             .chain(strays)
+            .chain(unpacked(&written))
             .collect(),
         strength: options.strength.rms_rel(),
         unshown,
@@ -133,6 +134,15 @@ fn advised(
         refusal: Box::new(refusal),
         advice,
     })
+}
+
+/// What is said of a model that is not compressed as its host was.
+pub(super) fn unpacked(written: &Written) -> Vec<String> {
+    let extensions = written.unpacked.iter();
+    let words = extensions.map(|name| {
+        format!("the host is compressed ({name}), and the copy is not: compress it again, and check what comes of it")
+    });
+    words.collect()
 }
 
 /// What its owner should know of a mark: that it holds no payload, that the usual steps of a web pipeline take it, and what may be seen

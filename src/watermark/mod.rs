@@ -22,7 +22,7 @@ pub use embed::{Embedding, embed};
 pub use error::{Advice, Error};
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
-pub use model::{Model, file_names};
+pub use model::{Model, decompress, file_names};
 pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };

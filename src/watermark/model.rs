@@ -81,3 +81,14 @@ impl Progress for Model<'_> {
 pub fn file_names(model: &[u8]) -> Result<Vec<String>, Error> {
     Ok(Document::file_names(model)?)
 }
+
+/// A model whose geometry is not compressed: the model itself, if it is none such. Second come the files that it names and that differ
+/// from those that were given, of a `.gltf`.
+///
+/// # Errors
+/// Where the model cannot be read.
+pub fn decompress<'a>(model: impl Into<Model<'a>>) -> Result<(Vec<u8>, Files), Error> {
+    let model = model.into();
+    let written = Document::read(model.bytes, model.files)?.write_plain()?;
+    Ok((written.model, written.files))
+}

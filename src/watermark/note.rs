@@ -1,6 +1,7 @@
 //! Notes: a text in the distances of all vertices from the centroid, beside the mark or without one. Read with the key alone.
 
 use super::displace::write;
+use super::embed::unpacked;
 use super::{Error, Model, Verdict};
 use crate::carrier::CarrierError;
 use crate::carrier::direction::{Cells, NUM_TESTS};
@@ -67,6 +68,8 @@ pub struct NoteReport {
     pub worst_part_rel: f64,
     /// As in a mark's report: at most 20.
     pub worst_turn_degrees: f64,
+    /// What is to be known of the copy.
+    pub warnings: Vec<String>,
     /// The output, read again from its bytes.
     pub read_back: NoteReading,
     /// SHA-256 of the main file before.
@@ -153,6 +156,7 @@ pub fn embed_note<'a>(
             max_rel: distortion.max_rel,
             worst_part_rel: deformation.worst_part,
             worst_turn_degrees: deformation.worst_turn,
+            warnings: unpacked(&written),
             read_back,
             host_sha256: sha256(model.bytes),
             marked_sha256: sha256(&written.model),

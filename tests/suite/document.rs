@@ -1,6 +1,7 @@
 //! Lossless glTF.
 
 mod cases;
+mod compressed;
 mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod fuzzed;

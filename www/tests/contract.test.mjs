@@ -22,7 +22,7 @@ test("each function takes the declared number of arguments", () => {
 });
 
 test("the package exports the same functions, init and its error", () => {
-  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), "init", "MeshmarkError"].sort());
+  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), "init", "initCodecs", "MeshmarkError"].sort());
 });
 
 test("real results have exactly the declared shapes", () => {
@@ -58,6 +58,8 @@ test("each call takes every option that is declared for it, and no other", () =>
     ReadOptions: (options) => facade.extract(evidence, key, options),
     DetectOptions: (options) => facade.detect(model, key, options),
     InspectOptions: (options) => facade.inspect(model, options),
+    MeasureMeshOptions: (options) => facade.measureMesh(new Float64Array(9), new Uint32Array(3), options),
+    DetectMeshOptions: (options) => facade.detectMesh(new Float64Array(9), new Uint32Array(3), key, options),
   };
   for (const [type, call] of Object.entries(calls)) {
     const { message } = caught(() => call({ other: 1 }));

@@ -96,8 +96,8 @@ unseen("files are taken in any order, and what is no model is told for what it i
 
   for (const [name, words] of [
     ["face.png", /“face\.png” is a picture\. If a \.gltf names it, drop both together/],
-    ["tree.stl", /“tree\.stl” is a model, but not of glTF\. Open it in a program such as Blender/],
-    ["all.zip", /“all\.zip” is an archive\. Unpack it/],
+    ["tree.stl", /“tree\.stl” is a model, but not of glTF\. It can be checked as it is; to mark it, open it in a program such as Blender/],
+    ["all.rar", /“all\.rar” is an archive\. Unpack it/],
   ]) {
     await drop(onDisk(name, "x"));
     await result().getByText(words).waitFor();

@@ -77,7 +77,7 @@ for (const [name, source] of [
   });
 }
 
-unseen("a .gltf with its folder is dropped, marked, and downloaded file by file", async () => {
+unseen("a .gltf with its folder is dropped, marked, and downloaded as an archive", async () => {
   const io = new NodeIO();
   const { json, resources } = await io.writeJSON(await io.readBinary(small), { basename: "scene" });
   const scene = join(folder, "scene");
@@ -92,11 +92,10 @@ unseen("a .gltf with its folder is dropped, marked, and downloaded file by file"
   assert.equal(await view().locator(".toolbar button:enabled").count(), 0, "tools that do nothing can be pressed");
   await mark();
   assert.equal(await headline(), "Your mark is in the copy");
-  const gltf = await saved("Download scene.marked.gltf");
-  const bin = await saved("Download scene.bin");
+  const archive = await saved("Download scene.marked.zip");
 
   await page.getByRole("tab", { name: "Check" }).click();
-  await drop(gltf, bin);
+  await drop(archive);
   await facts().getByText("scene.marked.gltf").waitFor();
   await check();
   assert.equal(await headline(), "Your mark was found");

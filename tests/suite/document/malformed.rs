@@ -451,19 +451,19 @@ fn malformed_json_is_refused() {
         (
             r#""mode":4"#,
             r#""mode":4,"extensions":{"KHR_draco_mesh_compression":{}}"#,
-            "document.compression-unsupported",
+            "document.bad-compression",
             Some("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression"),
         ),
         (
             r#""byteLength":48}"#,
             r#""byteLength":48,"extensions":{"EXT_meshopt_compression":{}}}"#,
-            "document.compression-unsupported",
+            "document.bad-compression",
             Some("/bufferViews/0/extensions/EXT_meshopt_compression"),
         ),
         (
             r#""byteLength":48}"#,
             r#""byteLength":48,"extensions":{"KHR_meshopt_compression":{}}}"#,
-            "document.compression-unsupported",
+            "document.bad-compression",
             Some("/bufferViews/0/extensions/KHR_meshopt_compression"),
         ),
     ];

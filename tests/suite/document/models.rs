@@ -79,21 +79,19 @@ fn real_files_are_written_byte_for_byte() {
 
 #[test]
 #[ignore = "needs ../shared/models"]
-fn compressed_real_files_are_refused() {
-    for (path, bytes, files) in models()
+fn compressed_real_files_are_read() {
+    let compressed = models()
         .into_iter()
-        .filter(|(_, bytes, _)| is_compressed(bytes))
-    {
-        let error = Document::read(&bytes, &files)
-            .map(|_| ())
-            .expect_err("compressed geometry");
-        assert_eq!(
-            error.code(),
-            "document.compression-unsupported",
-            "{}",
-            path.display()
-        );
-        assert!(error.to_string().contains("decompress it first"), "{error}");
+        .filter(|(_, bytes, _)| is_compressed(bytes));
+    for (path, bytes, files) in compressed {
+        let read = Document::read(&bytes, &files);
+        let document = read.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let triangles: usize = (0..document.meshes()[0].primitives.len())
+            .map(|part| document.triangles(0, part).expect("triangles").len())
+            .sum();
+        assert!(triangles > 0, "{}", path.display());
+        let written = document.write().expect("a written document");
+        assert!(written.model == bytes, "{}", path.display());
     }
 }
 

@@ -30,7 +30,7 @@ interface Asked {
 }
 
 export class Check extends View<Stage> {
-  protected override readonly isEvidenceWanted = true;
+  protected override readonly areSuspects = true;
   readonly #expected = find<HTMLInputElement>("#expected");
   #asked: Asked | undefined;
 

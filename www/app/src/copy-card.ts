@@ -16,7 +16,7 @@ export interface CopyEvents {
 }
 
 export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }: CopyEvents): HTMLElement {
-  const { marked, report, files, owner, asked } = copy;
+  const { marked, report, owner, asked } = copy;
   const { readBack } = report;
   const holds = isMark(readBack);
   const lost = holds ? losses(report.forecast) : null;
@@ -27,8 +27,8 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     holds ? "Your mark is in the copy" : "The mark does not hold in this model",
     [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
     ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
-    actions(...downloads(copy).map(({ name }) => button(`Download ${name}`, () => onSave(name), "primary"))),
-    ...(files.length > 0 ? [h("p", { class: "hint" }, "The .gltf names its other files: put these in the places of the originals, textures stay as they are.")] : []),
+    actions(...downloads(copy).map((name) => button(`Download ${name}`, () => onSave(name), "primary"))),
+    ...report.warnings.map((words) => h("p", { class: "hint" }, plain(words))),
     forecastList(report.forecast),
     numbers([
       ...readingRows(readBack),

@@ -2,7 +2,7 @@
 import type { Carrier, EmbedReport, Embedding, Strength } from "meshmark";
 import { engine } from "./engine";
 import type { KeySource } from "./key-form";
-import { copyName, sizeOf, type Model } from "./model";
+import { copyName, renamed, sizeOf, type Model } from "./model";
 
 /** What is random in a forecast is drawn from it: the same copy has the same forecast. */
 const FORECAST_SEED = 1;
@@ -39,10 +39,28 @@ export function copyOf(host: Model, { model, files, report }: Embedding, key: Ke
   return { id: `${report.markedSha256} ${marked.name}`, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, asked };
 }
 
-/** What is to be downloaded: the main file first. */
-export function downloads({ marked, files }: Copy): { name: string; bytes: Uint8Array }[] {
-  const others = files.map((uri) => ({ name: uri.slice(uri.lastIndexOf("/") + 1), bytes: marked.buffers[uri]! }));
-  return [{ name: marked.name, bytes: marked.bytes }, ...others];
+/** What is to be downloaded, by its name: the model, or an archive of it with all that it names. */
+export function downloads({ marked }: Copy): string[] {
+  return [isAlone(marked) ? marked.name : renamed(marked.name, "zip")];
+}
+
+/** The bytes of a download. */
+export async function bytesOf({ marked }: Copy): Promise<Uint8Array> {
+  if (isAlone(marked)) {
+    return marked.bytes;
+  }
+  const { zipSync } = await import("fflate");
+  return zipSync(filesOf(marked), { level: 0 });
+}
+
+/** The main file and all that it names, by their paths. What lies outside of its folder is left out. */
+export function filesOf({ name, bytes, images, buffers }: Model): Record<string, Uint8Array> {
+  const named = Object.entries({ ...images, ...buffers }).filter(([path]) => !path.split("/").includes(".."));
+  return { [name]: bytes, ...Object.fromEntries(named) };
+}
+
+function isAlone(model: Model): boolean {
+  return Object.keys(filesOf(model)).length === 1;
 }
 
 /** All of it that can be kept beside the original, as JSON. */

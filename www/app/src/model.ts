@@ -1,5 +1,6 @@
 /** A model as the person handed it in: one main file, and the files that it names. */
 import type { Files } from "meshmark";
+import { isForeign, surfaceOf } from "./foreign";
 
 export interface Model {
   /** The main file's name, without folders. */
@@ -8,6 +9,8 @@ export interface Model {
   /** By URI, percent-decoded: what the geometry is read from, and what is only looked at. */
   buffers: Files;
   images: Files;
+  /** The file itself, where `bytes` is what its surface was made into, for it is no glTF. */
+  original?: Uint8Array<ArrayBuffer>;
 }
 
 export interface NamedFile {
@@ -30,19 +33,22 @@ const GLB_MAGIC = 0x46546c67;
 const OTHERS: [ending: RegExp, words: string][] = [
   [/\.(png|jpe?g|webp|ktx2|gif|bmp|tiff?)$/i, "is a picture. If a .gltf names it, drop both together, or the .gltf first"],
   [/\.bin$/i, "is a part of a .gltf. Drop both together, or the .gltf first"],
-  [/\.(zip|7z|rar|tar|gz)$/i, "is an archive. Unpack it, and drop the model that is in it"],
-  [/\.(obj|stl|ply|fbx|blend|dae|3ds|3mf|usdz?|usd[ac]|max|ma|mb|step|stp|iges)$/i, "is a model, but not of glTF. Open it in a program such as Blender and export it as glTF (.glb)"],
+  [/\.(7z|rar|tar|gz)$/i, "is an archive. Unpack it, and drop the model that is in it"],
+  [/\.(obj|stl|ply|fbx|dae|3mf|usdz)$/i, "is a model, but not of glTF. It can be checked as it is; to mark it, open it in a program such as Blender and export it as glTF (.glb)"],
+  [/\.(blend|3ds|usd[ac]?|max|ma|mb|step|stp|iges)$/i, "is a model, but not of glTF. Open it in a program such as Blender and export it as glTF (.glb)"],
   [/\.key$/i, "seems to be a key. Choose it in the form, under “Key file”"],
   [EVIDENCE, "is evidence, measured from a model. Drop it in Check"],
 ];
 
 /**
- * The models among some files, each with the files beside it that it names; where it is wanted, evidence too, which stands for a model.
+ * The models among some files, each with the files beside it that it names. Of suspects also those that are no glTF, where there is none that
+ * is, and evidence, which stands for a model.
  *
  * @throws where there is none, in words
  */
-export function modelsIn(files: NamedFile[], isEvidenceWanted = false): Found[] {
-  const mains = files.filter(({ path }) => MAIN.test(path) || (isEvidenceWanted && EVIDENCE.test(path)));
+export function modelsIn(files: NamedFile[], areSuspects = false): Found[] {
+  const gltf = files.filter(({ path }) => MAIN.test(path) || (areSuspects && EVIDENCE.test(path)));
+  const mains = gltf.length === 0 && areSuspects ? files.filter(({ path }) => isForeign(path)) : gltf;
   if (mains.length === 0) {
     throw new Error(otherWords(files));
   }
@@ -51,6 +57,9 @@ export function modelsIn(files: NamedFile[], isEvidenceWanted = false): Found[] 
 
 async function open(main: NamedFile, files: NamedFile[]): Promise<Model> {
   const bytes = new Uint8Array(await main.file.arrayBuffer());
+  if (isForeign(main.path)) {
+    return { name: main.file.name, bytes: await surfaceOf(main.file.name, bytes), buffers: {}, images: {}, original: bytes };
+  }
   const folder = main.path.slice(0, main.path.lastIndexOf("/") + 1);
   const { buffers, images } = urisOf(bytes);
   return { name: main.file.name, bytes, buffers: await pick(buffers, files, folder), images: await pick(images, files, folder) };
@@ -73,8 +82,8 @@ export function missingFiles({ bytes, buffers, images }: Model): { buffers: stri
 }
 
 /** Of all its files, in bytes. */
-export function sizeOf({ bytes, buffers, images }: Model): number {
-  return [bytes, ...Object.values(buffers), ...Object.values(images)].reduce((sum, { length }) => sum + length, 0);
+export function sizeOf({ bytes, buffers, images, original }: Model): number {
+  return [original ?? bytes, ...Object.values(buffers), ...Object.values(images)].reduce((sum, { length }) => sum + length, 0);
 }
 
 /** Whether it is the JSON text alone, whatever its name says: else it is a .glb, or the same under the name .vrm. */

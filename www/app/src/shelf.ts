@@ -2,7 +2,7 @@
  * Finished copies. The one whose model is shown has a card that says what it was made with, and whether the form says something else by
  * now; all have a list. They stay until their owner dismisses them, and what was not downloaded through a reload.
  */
-import { downloads, reportOf, type Asked, type Copy } from "./copy";
+import { bytesOf, downloads, filesOf, reportOf, type Asked, type Copy } from "./copy";
 import { copyCard } from "./copy-card";
 import { announce, button, find, h } from "./dom";
 import { engine } from "./engine";
@@ -144,9 +144,10 @@ export class Shelf {
   }
 
   #save(entry: Entry, name: string): void {
-    const file = downloads(entry.copy).find((file) => file.name === name)!;
-    save(name, file.bytes as BlobPart, name.endsWith(".gltf") ? "model/gltf+json" : "model/gltf-binary");
-    this.#taken(entry, name);
+    void bytesOf(entry.copy).then((bytes) => {
+      save(name, bytes as BlobPart, TYPES[name.slice(name.lastIndexOf(".") + 1)]);
+      this.#taken(entry, name);
+    });
   }
 
   #taken(entry: Entry, ...names: string[]): void {
@@ -182,7 +183,7 @@ export class Shelf {
       this.outcome.present(entry.card);
     });
     show.setAttribute("aria-label", `Show ${marked.name}`);
-    const download = downloads(entry.copy).map(({ name }) => {
+    const download = downloads(entry.copy).map((name) => {
       const control = button(entry.left.has(name) ? "Download" : "Again", () => this.#save(entry, name));
       control.setAttribute("aria-label", `Download ${name}`);
       return control;
@@ -204,9 +205,9 @@ export class Shelf {
     const files: Record<string, Uint8Array> = {};
     for (const [i, { copy }] of entries.entries()) {
       const isTwin = entries.some((other) => other.copy !== copy && other.copy.marked.name === copy.marked.name);
-      const folder = isTwin || copy.files.length > 0 ? `${i + 1} ${renamed(copy.marked.name, "")}/` : "";
-      for (const { name, bytes } of downloads(copy)) {
-        files[folder + name] = bytes;
+      const folder = isTwin || Object.keys(filesOf(copy.marked)).length > 1 ? `${i + 1} ${renamed(copy.marked.name, "")}/` : "";
+      for (const [path, bytes] of Object.entries(filesOf(copy.marked))) {
+        files[folder + path] = bytes;
       }
       files[`${folder}${renamed(copy.marked.name, "report.json")}`] = new TextEncoder().encode(`${JSON.stringify(await reportOf(copy), null, 2)}\n`);
     }
@@ -240,8 +241,11 @@ function differences({ copy, host, key }: Entry, { model, asked }: Now): string[
   ];
 }
 
+/** By the endings of files. */
+const TYPES: Record<string, string> = { glb: "model/gltf-binary", gltf: "model/gltf+json", vrm: "model/gltf-binary", zip: "application/zip" };
+
 function namesOf(copy: Copy): Set<string> {
-  return new Set(downloads(copy).map(({ name }) => name));
+  return new Set(downloads(copy));
 }
 
 async function saveKey(key: KeySource): Promise<void> {

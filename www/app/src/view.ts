@@ -1,6 +1,7 @@
 /** What all views do: take a model in, show it, say what is wrong with it, work at it. */
 import type { Inspection } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
+import { unpacked } from "./archive";
 import { announce, find } from "./dom";
 import { engine } from "./engine";
 import { isEvidence, missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
@@ -19,7 +20,7 @@ export abstract class View<S extends Showing> {
   protected inspection: Inspection | undefined;
   /** The models that are worked at in one go, where they are several. */
   protected several: Found[] = [];
-  protected readonly isEvidenceWanted: boolean = false;
+  protected readonly areSuspects: boolean = false;
   /** What came with the model: files that it lacks may come later. */
   #files: NamedFile[] = [];
   #job: Job | undefined;
@@ -44,9 +45,10 @@ export abstract class View<S extends Showing> {
 
   /** Reads what was dropped or chosen, and takes the model in it, or several. What is no model leaves all as it is. */
   async takeFiles(files: NamedFile[]): Promise<void> {
-    const all = this.#areMissing(files) ? [...files, ...this.#files] : files;
     try {
-      const found = modelsIn(all, this.isEvidenceWanted);
+      const dropped = await unpacked(files);
+      const all = this.#areMissing(dropped) ? [...dropped, ...this.#files] : dropped;
+      const found = modelsIn(all, this.areSuspects);
       if (found.length > 1 && !this.#submitButton.dataset["several"]) {
         throw new Error(`There are ${found.length} models in this; drop one of them, with its own files.`);
       }
@@ -123,7 +125,11 @@ export abstract class View<S extends Showing> {
       return undefined;
     }
     try {
-      return await (await engine).inspect(model.bytes, { files: model.buffers });
+      const inspection = await (await engine).inspect(model.bytes, { files: model.buffers });
+      if (model.original) {
+        inspection.sha256 = await sha256(model.original);
+      }
+      return inspection;
     } catch (error) {
       return errorCard(this.cannot, error);
     }
@@ -225,4 +231,10 @@ export abstract class View<S extends Showing> {
   }
 
   protected abstract submit(): Promise<void>;
+}
+
+/** Of a file that the module has not seen, in hexadecimal. */
+async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
+  const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
+  return Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }

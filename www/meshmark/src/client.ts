@@ -6,12 +6,15 @@
 import { MeshmarkError } from "./error.js";
 import type {
   Capacity,
+  Decompressed,
+  DetectMeshOptions,
   DetectOptions,
   EmbedOptions,
   Embedding,
   Extraction,
   Inspection,
   InspectOptions,
+  MeasureMeshOptions,
   MeasureOptions,
   Payload,
   ReadOptions,
@@ -27,6 +30,8 @@ export interface ClientOptions {
   workerUrl?: string | URL | undefined;
   /** Default: the module of this package. */
   wasmUrl?: string | URL | undefined;
+  /** Default: the module of this package for compressed models. It is fetched when one comes. */
+  codecsUrl?: string | URL | undefined;
 }
 
 /** The functions of `meshmark` with the same arguments; a `signal` among their options ends a call. They reject with `MeshmarkError`. */
@@ -34,10 +39,13 @@ export interface Client {
   deriveKey(owner: string, passphrase: string, options?: CallOptions): Promise<Uint8Array>;
   embed(model: Uint8Array, payload: Payload, key: Uint8Array, options?: EmbedOptions & CallOptions): Promise<Embedding>;
   measure(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Uint8Array>;
+  measureMesh(positions: Float64Array, triangles: Uint32Array, options?: MeasureMeshOptions & CallOptions): Promise<Uint8Array>;
   extract(evidence: Uint8Array, key: Uint8Array, options?: ReadOptions & CallOptions): Promise<Extraction>;
   extractMany(evidence: Uint8Array, keys: Uint8Array[], options?: ReadOptions & CallOptions): Promise<Extraction[]>;
   verify(evidence: Uint8Array, key: Uint8Array, expected: Payload, options?: ReadOptions & CallOptions): Promise<Verification>;
   detect(model: Uint8Array, key: Uint8Array, options?: DetectOptions & CallOptions): Promise<Extraction>;
+  detectMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, options?: DetectMeshOptions & CallOptions): Promise<Extraction>;
+  decompress(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Decompressed>;
   inspect(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Inspection>;
   capacity(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Capacity>;
   demoModel(options?: CallOptions): Promise<Uint8Array>;
@@ -52,16 +60,19 @@ export interface Client {
  * @throws MeshmarkError `worker.failed` where no worker can be started (Node has none), `init.failed` where the module
  * cannot be loaded
  */
-export async function createClient({ workerUrl, wasmUrl }: ClientOptions = {}): Promise<Client> {
-  const remote = new Remote(() => startWorker(workerUrl), absolute(wasmUrl));
+export async function createClient({ workerUrl, wasmUrl, codecsUrl }: ClientOptions = {}): Promise<Client> {
+  const remote = new Remote(() => startWorker(workerUrl), { wasmUrl: absolute(wasmUrl), codecsUrl: absolute(codecsUrl) });
   const client: Client = {
     deriveKey: (owner, passphrase, options) => remote.call("deriveKey", [owner, passphrase], options),
     embed: (model, payload, key, options) => remote.call("embed", [model, payload, key], options),
     measure: (model, options) => remote.call("measure", [model], options),
+    measureMesh: (positions, triangles, options) => remote.call("measureMesh", [positions, triangles], options),
     extract: (evidence, key, options) => remote.call("extract", [evidence, key], options),
     extractMany: (evidence, keys, options) => remote.call("extractMany", [evidence, keys], options),
     verify: (evidence, key, expected, options) => remote.call("verify", [evidence, key, expected], options),
     detect: (model, key, options) => remote.call("detect", [model, key], options),
+    detectMesh: (positions, triangles, key, options) => remote.call("detectMesh", [positions, triangles, key], options),
+    decompress: (model, options) => remote.call("decompress", [model], options),
     inspect: (model, options) => remote.call("inspect", [model], options),
     capacity: (model, options) => remote.call("capacity", [model], options),
     demoModel: (options) => remote.call("demoModel", [], options),

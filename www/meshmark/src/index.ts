@@ -11,8 +11,10 @@ export type {
   Capacity,
   Carrier,
   CarrierReading,
+  Decompressed,
   DetailedExtraction,
   Details,
+  DetectMeshOptions,
   DetectOptions,
   EmbedOptions,
   EmbedReport,
@@ -23,6 +25,7 @@ export type {
   Input,
   Inspection,
   InspectOptions,
+  MeasureMeshOptions,
   MeasureOptions,
   MeshmarkErrorObject,
   OnProgress,
@@ -38,7 +41,10 @@ export type {
 export type InitInput = string | URL | Request | Response | BufferSource | WebAssembly.Module;
 
 /** What wasm-bindgen exports beside the functions that the types declare. */
-const { default: load } = wasm as unknown as { default(options: { module_or_path: InitInput }): Promise<unknown> };
+type Module = typeof wasm & { default(options: { module_or_path: InitInput }): Promise<unknown> };
+
+/** The functions of the module that answers: the first one, or the one with the codecs once that is there. */
+let current: typeof wasm = wasm;
 
 let starting: Promise<void> | undefined;
 let started = false;
@@ -59,8 +65,36 @@ export function init(input?: InitInput): Promise<void> {
 }
 
 async function start(input: InitInput = new URL("../wasm/meshmark_bg.wasm", import.meta.url)): Promise<void> {
-  await load({ module_or_path: isFileUrl(input) ? await readFile(input) : input });
+  await load(wasm as Module, input);
   started = true;
+}
+
+let startingCodecs: Promise<void> | undefined;
+
+/**
+ * Loads the module that reads compressed geometry (Draco, meshopt) too, in the place of the first one. Until then such models are refused with
+ * `document.compression-unsupported`. The client calls it when a model asks for it.
+ *
+ * @param input as for `init`
+ * @throws MeshmarkError `init.failed`
+ */
+export function initCodecs(input?: InitInput): Promise<void> {
+  startingCodecs ??= startCodecs(input).catch((cause: unknown) => {
+    startingCodecs = undefined;
+    throw new MeshmarkError("init.failed", `The module for compressed models could not be loaded: ${String(cause)}`, null, { cause });
+  });
+  return startingCodecs;
+}
+
+async function startCodecs(input: InitInput = new URL("../wasm-codecs/codecs_bg.wasm", import.meta.url)): Promise<void> {
+  const codecs = (await import("../wasm-codecs/codecs.js")) as unknown as Module;
+  await load(codecs, input);
+  current = codecs;
+  started = true;
+}
+
+async function load(module: Module, input: InitInput): Promise<void> {
+  await module.default({ module_or_path: isFileUrl(input) ? await readFile(input) : input });
 }
 
 function isFileUrl(input: InitInput): input is string | URL {
@@ -75,12 +109,15 @@ async function readFile(url: string | URL): Promise<BufferSource> {
   return process.getBuiltinModule("node:fs/promises").readFile(new URL(url));
 }
 
-/** The module's function, with its errors made `MeshmarkError`s. More arguments than it takes would be ignored in silence. */
-function guarded<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
-  return (...args: Arguments): Result => {
+type Name = Exclude<keyof typeof wasm, "default" | "initSync">;
+
+/** The function of the module that answers, with its errors made `MeshmarkError`s. More arguments than it takes would be ignored in silence. */
+function guarded<N extends Name>(name: N): (typeof wasm)[N] {
+  const call = (...args: unknown[]): unknown => {
     if (!started) {
       throw new MeshmarkError("init.missing", "Call init() and wait for it first.");
     }
+    const f = current[name] as (...args: unknown[]) => unknown;
     if (args.length > f.length) {
       throw new MeshmarkError("options.argument", `There are ${args.length} arguments; it takes at most ${f.length}.`);
     }
@@ -90,16 +127,20 @@ function guarded<Arguments extends unknown[], Result>(f: (...args: Arguments) =>
       throw asMeshmarkError(thrown);
     }
   };
+  return call as (typeof wasm)[N];
 }
 
-export const deriveKey: typeof wasm.deriveKey = guarded(wasm.deriveKey);
-export const embed: typeof wasm.embed = guarded(wasm.embed);
-export const measure: typeof wasm.measure = guarded(wasm.measure);
-export const extract: typeof wasm.extract = guarded(wasm.extract);
-export const extractMany: typeof wasm.extractMany = guarded(wasm.extractMany);
-export const verify: typeof wasm.verify = guarded(wasm.verify);
-export const detect: typeof wasm.detect = guarded(wasm.detect);
-export const inspect: typeof wasm.inspect = guarded(wasm.inspect);
-export const capacity: typeof wasm.capacity = guarded(wasm.capacity);
-export const demoModel: typeof wasm.demoModel = guarded(wasm.demoModel);
-export const version: typeof wasm.version = guarded(wasm.version);
+export const deriveKey = guarded("deriveKey");
+export const embed = guarded("embed");
+export const measure = guarded("measure");
+export const measureMesh = guarded("measureMesh");
+export const extract = guarded("extract");
+export const extractMany = guarded("extractMany");
+export const verify = guarded("verify");
+export const detect = guarded("detect");
+export const detectMesh = guarded("detectMesh");
+export const decompress = guarded("decompress");
+export const inspect = guarded("inspect");
+export const capacity = guarded("capacity");
+export const demoModel = guarded("demoModel");
+export const version = guarded("version");

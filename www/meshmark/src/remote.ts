@@ -14,6 +14,9 @@ export interface CallOptions {
 /** The options of a call: those of its function, of which `onProgress` stays at this end, and `CallOptions`. */
 type Options = CallOptions & { onProgress?: ((...heard: never[]) => void) | undefined };
 
+/** What the other end needs before its first call, by name. */
+export type Setup = Record<string, string | undefined>;
+
 interface Request {
   name: string;
   args: unknown[];
@@ -21,7 +24,7 @@ interface Request {
   /** Whether progress is to be told. */
   isHeard: boolean;
   /** What the worker needs before its first call; it comes with every one. */
-  setup: string | undefined;
+  setup: Setup | undefined;
 }
 
 type Reply =
@@ -39,14 +42,14 @@ interface Job {
 /** The calling end. Its worker is started with the first call, and again after one that was ended. */
 export class Remote {
   readonly #start: () => Worker;
-  readonly #setup: string | undefined;
+  readonly #setup: Setup | undefined;
   readonly #waiting: Job[] = [];
   #running: Job | undefined;
   #worker: Worker | undefined;
   #disposed = false;
 
   /** @param setup what the other end's `ready` is given */
-  constructor(start: () => Worker, setup?: string) {
+  constructor(start: () => Worker, setup?: Setup) {
     this.#start = start;
     this.#setup = setup;
   }
@@ -161,7 +164,7 @@ export class Remote {
  *
  * @param ready is waited for before each call; it is given the caller's `setup`
  */
-export function answer(functions: Record<string, (...args: never[]) => unknown>, ready: (setup: string | undefined) => Promise<unknown>): void {
+export function answer(functions: Record<string, (...args: never[]) => unknown>, ready: (setup: Setup | undefined) => Promise<unknown>): void {
   const reply = (message: Reply, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
   self.addEventListener("message", async ({ data }: MessageEvent<Request>) => {
     try {
@@ -169,7 +172,7 @@ export function answer(functions: Record<string, (...args: never[]) => unknown>,
       const f = functions[data.name] as (...args: unknown[]) => unknown;
       const onProgress = (...heard: unknown[]) => reply({ kind: "progress", heard });
       const options = data.isHeard ? { ...data.options, onProgress } : data.options;
-      const result = f(...data.args, ...(options ? [options] : []));
+      const result = await f(...data.args, ...(options ? [options] : []));
       reply({ kind: "result", result }, buffersOf(result));
     } catch (thrown) {
       reply({ kind: "error", error: errorObject(asMeshmarkError(thrown)) });

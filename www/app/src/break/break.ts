@@ -2,6 +2,7 @@
 import { announce, find, h } from "../dom";
 import { engine } from "../engine";
 import { incompleteKeyField, isKeyComplete, keySource } from "../key-form";
+import { unpacked } from "../archive";
 import { modelsIn, type Model, type NamedFile } from "../model";
 import { card, errorCard } from "../outcome";
 import { View } from "../view";
@@ -72,7 +73,7 @@ export class Break extends View<BreakStage> {
       return super.takeFiles(files);
     }
     try {
-      const found = modelsIn(files);
+      const found = modelsIn(await unpacked(files));
       this.outcome.tell();
       for (const { name, open } of found) {
         this.#ask(this.#made(name, "a file of your own", false, bench.judge(await open())));

@@ -61,10 +61,10 @@ pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
     Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
-    Extraction, Forecast, Holds, Input, Inspection, Level, Model, NoteEmbedding, NoteReading,
-    NoteReport, NoteSize, Strength, Surface, Suspect, Unshown, Verdict, capacity, decompress,
-    detect, embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
-    read_note, verify,
+    Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
+    NoteReading, NoteReport, NoteSize, Strength, Surface, Suspect, Unshown, Verdict, capacity,
+    decompress, detect, embed, embed_note, extract, extract_many, file_names, inspect, measure,
+    note_capacity, read_note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

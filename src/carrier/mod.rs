@@ -16,7 +16,7 @@ pub(crate) use error::{possible, take};
 pub use reading::{Hypothesis, Reading};
 
 use crate::code::Codeword;
-use crate::geometry::Leeway;
+use crate::geometry::{Leeway, Piece};
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::{Cancelled, Progress, ignore};
@@ -135,6 +135,11 @@ impl Carrier {
     /// Whether a shape has axes of its own, by which a mark in it is found at once.
     pub(crate) fn has_axes(mesh: &Mesh) -> bool {
         solid::has_axes(mesh)
+    }
+
+    /// The triangles of a piece of a mesh, by its number in readings.
+    pub(crate) fn piece(mesh: &Mesh, number: usize) -> Option<Piece> {
+        solid::piece(mesh, number)
     }
 
     /// The exponent that is to be hoped for where so many addresses can be read, whichever are a key's: a verdict must not say that.

@@ -65,6 +65,7 @@ pub(super) fn instances(
         let transforms = transforms(&read, first.count, storages)?;
         let start = nodes.len();
         nodes.extend(transforms.into_iter().map(|transform| Node {
+            name: None,
             transform,
             children: Vec::new(),
             mesh: Some(mesh),

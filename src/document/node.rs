@@ -8,6 +8,8 @@ use super::{DocumentError, item};
 /// An object of the scene: a transform, and what hangs on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
+    /// What people call it.
+    pub name: Option<String>,
     /// From the node's coordinates to its parent's.
     pub transform: Transform,
     /// The nodes placed relative to this one. No node is the child of two, none its own descendant.
@@ -86,6 +88,7 @@ fn read_node(root: &Root, index: usize, node: &schema::Node) -> Result<Node, Doc
         )
     });
     Ok(Node {
+        name: node.name.clone(),
         transform: match node.matrix {
             Some(matrix) => Transform::Matrix(matrix),
             None => Transform::Decomposed {

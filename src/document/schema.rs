@@ -106,6 +106,7 @@ pub(super) struct Primitive<'a> {
 }
 
 pub(super) struct Node {
+    pub name: Option<String>,
     pub children: Vec<u64>,
     pub mesh: Option<u64>,
     pub skin: Option<u64>,
@@ -214,6 +215,8 @@ impl<'a> FromJson<'a> for Node {
     fn from_json(raw: &'a RawValue, place: Place) -> Result<Self, DocumentError> {
         let object = Object::new(raw, place)?;
         Ok(Self {
+            // A name says nothing of geometry: what is none is let pass.
+            name: object.optional("name").unwrap_or_default(),
             children: object.or_default("children")?,
             mesh: object.optional("mesh")?,
             skin: object.optional("skin")?,

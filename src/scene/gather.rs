@@ -152,8 +152,6 @@ fn local_transform(node: &Node) -> DAffine3 {
 /// Placements and triangles before welding. A corner is (placement, element).
 pub(super) struct Gathering {
     placements: Vec<Placement>,
-    /// The node of each placement.
-    nodes: Vec<usize>,
     worlds: Vec<Vec<DVec3>>,
     triangles: Vec<(u32, [u32; 3])>,
 }
@@ -179,7 +177,6 @@ impl Gathering {
     fn with_room_for(count: &Count) -> Gathering {
         Gathering {
             placements: Vec::new(),
-            nodes: Vec::new(),
             worlds: Vec::new(),
             triangles: Vec::with_capacity(count.triangles as usize),
         }
@@ -229,8 +226,8 @@ impl Gathering {
             .into_iter()
             .map(|p| to_world.transform_point3(DVec3::from_array(p)))
             .collect();
-        self.nodes.push(placed.node);
         self.placements.push(Placement {
+            node: placed.node,
             accessor,
             to_world,
             to_local: inverse(to_world.matrix3),
@@ -243,10 +240,8 @@ impl Gathering {
     /// Whose fault it is that a corner is nowhere: the file's numbers', or the node's transform.
     fn not_finite(&self, document: &Document, (placement, element): (u32, u32)) -> SceneError {
         let (placement, element) = (placement as usize, element as usize);
-        let accessor = self
-            .placements
-            .get(placement)
-            .map(|placement| placement.accessor);
+        let placement = self.placements.get(placement);
+        let accessor = placement.map(|placement| placement.accessor);
         let locals = accessor.and_then(|accessor| document.positions(accessor).ok());
         let is_finite = |local: &[f64; 3]| local.iter().all(|component| component.is_finite());
         match (
@@ -259,7 +254,7 @@ impl Gathering {
             }
             .into(),
             _ => SceneError::NotFinite {
-                node: self.nodes.get(placement).copied().unwrap_or_default(),
+                node: placement.map_or(0, |placement| placement.node),
             },
         }
     }
@@ -383,12 +378,12 @@ impl Gathering {
     pub(super) fn of_surface(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Gathering {
         Gathering {
             placements: vec![Placement {
+                node: 0,
                 accessor: 0,
                 to_world: DAffine3::IDENTITY,
                 to_local: None,
                 vertices: vec![None; positions.len()],
             }],
-            nodes: Vec::new(),
             worlds: vec![positions.iter().copied().map(DVec3::from_array).collect()],
             triangles: triangles.iter().map(|&triangle| (0, triangle)).collect(),
         }

@@ -21,7 +21,7 @@ mod uses;
 pub use count::Count;
 pub use plain::to_glb;
 
-use crate::document::DocumentError;
+use crate::document::{Document, DocumentError};
 use crate::geometry::Parts;
 use crate::mesh::{Admissible, Mesh};
 use glam::{DAffine3, DMat3, DVec3};
@@ -145,6 +145,7 @@ pub struct Scene {
 /// One accessor as one node shows it.
 #[derive(Clone, Debug)]
 struct Placement {
+    node: usize,
     accessor: usize,
     to_world: DAffine3,
     /// The linear part's inverse; `None` where it has none.
@@ -174,6 +175,32 @@ impl Scene {
             first.y,
             first.z
         ))
+    }
+}
+
+impl Scene {
+    /// What the node is called that shows most of some vertices, or the next above it that has a name.
+    pub fn name_of<'a>(&self, document: &'a Document, vertices: &[u32]) -> Option<&'a str> {
+        let mut is_asked = vec![false; self.mesh.positions.len()];
+        for &vertex in vertices {
+            if let Some(is_asked) = is_asked.get_mut(vertex as usize) {
+                *is_asked = true;
+            }
+        }
+        let num_shown = |placement: &&Placement| {
+            let shown = placement.vertices.iter().flatten();
+            shown
+                .filter(|&&vertex| is_asked.get(vertex as usize) == Some(&true))
+                .count()
+        };
+        let node = self.placements.iter().max_by_key(num_shown)?.node;
+        let parent_of = |node: usize| {
+            let mut nodes = document.nodes().iter();
+            nodes.position(|other| other.children.contains(&node))
+        };
+        let above = std::iter::successors(Some(node), |&node| parent_of(node));
+        let name = |node: usize| document.nodes().get(node)?.name.as_deref();
+        above.filter_map(name).find(|name| !name.is_empty())
     }
 }
 

@@ -116,6 +116,11 @@ export interface Extraction extends Partial<Details> {
   sentence: string;
   /** Why it is not `found`; `null` where it is. */
   reason: string | null;
+  /**
+   * Which piece of the suspect it was found in, alone: what its node is called, and how many of the model's connected parts it has. `null`
+   * where it was the whole, where nothing was found, and where evidence was read.
+   */
+  foundIn: { name: string | null; parts: number; ofParts: number } | null;
   /** The payload, where it is found. */
   tag: string | null;
   number: number | null;

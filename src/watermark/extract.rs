@@ -2,12 +2,13 @@
 
 use super::error::Error;
 use super::judge::Judge;
-use super::report::{Extraction, Input};
+use super::report::{Extraction, FoundIn, Input};
 use super::suspect::Suspect;
 use crate::bits::Payload;
 use crate::carrier::{Carrier, Reading};
 use crate::evidence::Evidence;
 use crate::key::Key;
+use crate::mesh::Edges;
 use crate::progress::Stage;
 
 /// Measures a suspect: everything that needs no key. What is measured once can be tested with as many keys as there are.
@@ -81,7 +82,19 @@ pub fn detect<'a>(
         let is_settled = |reading: &Reading| judge.is_settled(reading);
         readings[carrier as usize] = carrier.read_until(&mesh, key, &is_settled, &mut suspect)?;
     }
-    let conclusion = judge.conclude(&readings);
+    let mut conclusion = judge.conclude(&readings);
+    let carriers = &conclusion.details().carriers;
+    let piece = carriers.iter().find_map(|carrier| carrier.piece);
+    conclusion.found_in = piece.and_then(|number| {
+        let triangles = Carrier::piece(&mesh, number)?;
+        let vertices = triangles.concat();
+        let piece = Edges::new(&mesh.part(triangles));
+        Some(FoundIn {
+            name: suspect.name_of(&vertices),
+            parts: piece.num_components(),
+            of_parts: Edges::new(&mesh).num_components(),
+        })
+    });
     suspect.step(Stage::Test, 1.0)?;
     Ok(conclusion)
 }

@@ -316,6 +316,7 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
         input,
         sentence: verdict.sentence(),
         reason,
+        found_in: None,
         tag,
         number,
         details: Details {

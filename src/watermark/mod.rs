@@ -28,6 +28,7 @@ pub use note::{
 };
 pub use options::{EmbedOptions, Strength};
 pub use report::{
-    CarrierReading, Details, EmbedReport, Extraction, Forecast, Input, Level, Unshown, Verdict,
+    CarrierReading, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level, Unshown,
+    Verdict,
 };
 pub use suspect::{Surface, Suspect};

@@ -88,12 +88,27 @@ pub struct Extraction {
     pub sentence: &'static str,
     /// Why it is not `found`: words without a number that follows the key.
     pub reason: Option<String>,
+    /// Which piece of the suspect it was found in, alone, where that was not the whole and the suspect is at hand.
+    pub found_in: Option<FoundIn>,
     /// The payload as a tag, where it is found.
     pub tag: Option<String>,
     /// The payload as a number, where it is found.
     pub number: Option<u64>,
     pub(super) details: Details,
     pub(super) shows_details: bool,
+}
+
+/// A piece of a model, as people find it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct FoundIn {
+    /// The name of the node that shows most of it, or of the next above that has one.
+    pub name: Option<String>,
+    /// Its connected parts.
+    pub parts: usize,
+    /// Those of the whole model.
+    pub of_parts: usize,
 }
 
 /// What follows the key in a reading.
@@ -128,11 +143,12 @@ impl Extraction {
 impl Serialize for Extraction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let num_details = if self.shows_details { 3 } else { 0 };
-        let mut fields = serializer.serialize_struct("Extraction", 6 + num_details)?;
+        let mut fields = serializer.serialize_struct("Extraction", 7 + num_details)?;
         fields.serialize_field("verdict", &self.verdict)?;
         fields.serialize_field("input", &self.input)?;
         fields.serialize_field("sentence", &self.sentence)?;
         fields.serialize_field("reason", &self.reason)?;
+        fields.serialize_field("foundIn", &self.found_in)?;
         fields.serialize_field("tag", &self.tag)?;
         fields.serialize_field("number", &self.number)?;
         if self.shows_details {

@@ -62,6 +62,16 @@ impl Suspect<'_> {
         })
     }
 
+    /// What a model calls some of its vertices.
+    pub(super) fn name_of(&self, vertices: &[u32]) -> Option<String> {
+        let Kind::Model(model) = &self.0 else {
+            return None;
+        };
+        let document = Document::read(model.bytes, model.files).ok()?;
+        let scene = Scene::gather(&document).ok()?;
+        scene.name_of(&document, vertices).map(str::to_owned)
+    }
+
     /// Says how far the work is.
     pub(super) fn step(&mut self, stage: Stage, fraction: f64) -> Result<(), Cancelled> {
         step(self, stage, fraction)

@@ -1,6 +1,7 @@
 //! Scenes of several objects: what is one, and that a mark is found in what was taken out of a scene or put into one.
 
 use crate::support::fixtures::{cuboid, key, payload, strong};
+use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Packing, primitive};
 use glam::{DMat3, DQuat, DVec3};
 use meshmark::internals::attack::{similarity, simplify};
 use meshmark::internals::carrier::solid::{Measurement, Surfaces};
@@ -133,6 +134,27 @@ fn pieces_hold_the_mark_of_a_model_among_others() {
         let suspect = simplify(&Mesh::joined([model.clone(), other]), 0.5);
         assert_eq!(found(&similarity(&suspect, 5)), Some(Some(1)), "{name}");
     }
+}
+
+/// A found piece is called what its node is, or the node above it.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_that_are_found_are_named() {
+    let rock = marked(&shapes::asteroid(40, 60));
+    let room = moved(&cuboid(DVec3::splat(2.0)), 4.0, DVec3::splat(-4.0));
+    let mut builder = GltfBuilder::new(Packing::Glb);
+    for mesh in [&room, &simplify(&rock, 0.5)] {
+        let points: Vec<[f64; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
+        let position = builder.positions(0, Layout::F32, &points);
+        let indices = builder.indices(0, Component::U32, &mesh.triangles.concat());
+        builder.mesh(&[primitive(position, Some(indices), 4)]);
+    }
+    builder.node(r#"{"mesh":0,"name":"room"}"#);
+    builder.node(r#"{"children":[2],"name":"rock"}"#);
+    builder.node(r#"{"mesh":1,"name":""}"#);
+    let answer = detect(&builder.build().bytes, &key(1), None).unwrap();
+    let place = answer.found_in.unwrap();
+    assert_eq!((place.name.as_deref(), place.parts), (Some("rock"), 1));
+    assert_eq!(place.of_parts, 2);
 }
 
 /// Each object of a scene has the mark, and keeps it when it is taken out.

@@ -165,6 +165,14 @@ impl Suspect {
     }
 }
 
+/// The triangles of a piece of a mesh, by its number in readings: 1 is the first.
+pub fn piece(mesh: &Mesh, number: usize) -> Option<Piece> {
+    let Pieces { objects, patches } = Pieces::of(mesh);
+    let pieces = objects.into_iter().chain(patches).take(MOST_PIECES);
+    let is_read = |piece: &Piece| !Surfaces::new(&mesh.part(piece.clone())).is_empty();
+    pieces.filter(is_read).nth(number.checked_sub(1)?)
+}
+
 /// What is read alone of a mesh.
 fn pieces_of(mesh: &Mesh) -> impl Iterator<Item = Surfaces> {
     let Pieces { objects, patches } = Pieces::of(mesh);

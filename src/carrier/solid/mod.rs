@@ -53,7 +53,7 @@ mod surfaces;
 mod window;
 
 pub use frame::has_axes;
-pub use measurement::{Measurement, Suspect};
+pub use measurement::{Measurement, Suspect, piece};
 pub use objects::embed;
 pub use surface::Surface;
 pub use surfaces::Surfaces;

@@ -114,7 +114,8 @@ export function oddsOf(lnP: number): HTMLElement {
 /** What a blind reading says, as rows of `numbers`. */
 export function readingRows(reading: DetailedExtraction): Row[] {
   const isInPiece = reading.carriers.some(({ piece }) => piece !== null);
-  const piece: Row = ["Found in", "a piece of the model, read alone", "An object of the scene, whatever stands beside it."];
+  const where = reading.foundIn ? `${reading.foundIn.name ?? "a piece without a name"}, ${count(reading.foundIn.parts)} of ${count(reading.foundIn.ofParts)} parts` : "a piece of the model";
+  const piece: Row = ["Found in", where, "Read alone, whatever stands beside it."];
   return [
     ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
     ...(isInPiece ? [piece] : []),

@@ -168,10 +168,10 @@ pub fn inspect(model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
 #[wasm_bindgen(skip_typescript)]
 pub fn capacity(model: &[u8], options: JsValue) -> Result<JsValue, JsValue> {
     let options = Options::new(options, &["files", "onProgress"])?;
-    let (files, mut progress) = (options.files("files")?, options.progress("onProgress")?);
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
     let model = Model::new(model)
         .with_files(&files)
-        .with_progress(&mut progress);
+        .with_progress(&mut listener);
     encoded(&watermark::capacity(model).map_err(thrown)?)
 }
 

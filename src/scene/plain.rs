@@ -14,7 +14,14 @@ pub fn to_glb(mesh: &Mesh) -> Vec<u8> {
             .collect()
     };
     let positions = floats(&mesh.positions);
-    let normals = floats(&vertex_normals(mesh));
+    // A vertex whose triangles face both ways alike has no normal, and the file needs one.
+    let mut normals = vertex_normals(mesh);
+    for normal in &mut normals {
+        if *normal == DVec3::ZERO {
+            *normal = DVec3::Z;
+        }
+    }
+    let normals = floats(&normals);
     let indices: Vec<u8> = mesh
         .triangles
         .iter()

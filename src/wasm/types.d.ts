@@ -146,6 +146,8 @@ export interface EmbedReport {
    */
   worstPartRel: number;
   worstTurnDegrees: number;
+  /** Pairs of triangles of one part that cut each other now, and neither did nor touched before: none. */
+  newIntersections: number;
   /** What may be seen, in sentences: none, but for strengths that are given as a number. */
   warnings: string[];
   strength: number;

@@ -7,7 +7,7 @@ use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::code::{Checked, Codeword};
 use crate::digest::sha256;
 use crate::document::{Document, Files, Written};
-use crate::geometry::{Bounds, Deformation, Distortion, Leeway, Parts, diagonal};
+use crate::geometry::{Bounds, Deformation, Distortion, Leeway, Parts, cuts, diagonal};
 use crate::key::Key;
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::Stage;
@@ -59,6 +59,7 @@ fn embed_in(
         marked,
         written,
         strays,
+        num_cuts,
     } = mark(&mut model, payload, key, options)?;
     let distortion = Distortion::between(&host.positions, &marked.positions);
     let deformation = Deformation::between(&host, &parts, &marked.positions);
@@ -87,6 +88,7 @@ fn embed_in(
         max_movement: distortion.max_rel * diagonal(&host.positions),
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
+        new_intersections: num_cuts,
         warnings: warnings(&deformation).into_iter().chain(strays).collect(),
         strength: options.strength.rms_rel(),
         read_back,
@@ -128,6 +130,8 @@ struct Marked {
     written: Written,
     /// Where strays lie, in words.
     strays: Option<String>,
+    /// Pairs of triangles that cut each other and did not before.
+    num_cuts: usize,
 }
 
 /// Reads, displaces and writes.
@@ -198,7 +202,7 @@ fn mark(
         .collect();
     // What is done with makes room: models of a million vertices are marked in a browser tab too.
     drop(mesh);
-    let positions = write(model, &mut document, &scene, &leeway, displacement)?;
+    let (positions, num_cuts) = write(model, &mut document, &scene, &parts, &leeway, displacement)?;
     drop(leeway);
     let strays = scene.strays_in_words();
     let host = scene.mesh;
@@ -212,40 +216,63 @@ fn mark(
         marked,
         written,
         strays,
+        num_cuts,
     })
 }
 
+/// Triangles that would cut each other are brought back half of the way so often, before they are left where they were.
+const HALVINGS: usize = 4;
+
 /// Displaces the vertices of a document that was just read, and says where they are then. Those that rounding to the file's numbers takes
-/// too far, or whose triangles it turns too far, stay where they were.
+/// too far, or whose triangles it turns too far, stay where they were; those whose triangles would cut others of their part go less far.
+/// Gives back how many pairs of triangles cut each other after all.
 pub(super) fn write(
     model: &Model,
     document: &mut Document,
     scene: &Scene,
+    parts: &Parts,
     leeway: &Leeway,
     mut displacement: Vec<DVec3>,
-) -> Result<Vec<DVec3>, Error> {
+) -> Result<(Vec<DVec3>, usize), Error> {
+    let mut time = 0;
     loop {
         scene.scatter(document, &displacement)?;
         let positions = scene.positions_in(document)?;
+        let is_moved = |vertex: &u32| displacement[*vertex as usize] != DVec3::ZERO;
         let mut beyond = leeway.beyond(&positions);
-        beyond.retain(|&vertex| displacement[vertex as usize] != DVec3::ZERO);
-        if beyond.is_empty() {
-            return Ok(positions);
+        beyond.retain(is_moved);
+        let cuts = cuts(&scene.mesh, parts, &positions);
+        let corners = |triangle: u32| scene.mesh.triangles[triangle as usize];
+        let mut cut: Vec<u32> = cuts.iter().flatten().flat_map(|&t| corners(t)).collect();
+        cut.retain(is_moved);
+        if beyond.is_empty() && cut.is_empty() {
+            return Ok((positions, cuts.len()));
         }
-        hold(&mut displacement, &scene.admissible, &beyond);
+        let share = if time < HALVINGS { 0.5 } else { 0.0 };
+        shorten(&mut displacement, &scene.admissible, &cut, share);
+        shorten(&mut displacement, &scene.admissible, &beyond, 0.0);
         *document = Document::read(model.bytes, model.files)?;
+        time += 1;
     }
 }
 
-/// Leaves vertices, and those that move with them, where they are.
-fn hold(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32]) {
+/// Leaves vertices, and those that move with them, a share of their movement.
+fn shorten(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32], share: f64) {
+    if vertices.is_empty() {
+        return;
+    }
+    let mut is_shorter = vec![false; displacement.len()];
     for &vertex in vertices {
-        displacement[vertex as usize] = DVec3::ZERO;
+        is_shorter[vertex as usize] = true;
     }
     for orbit in &admissible.orbits {
         let members = || orbit.members.iter().map(|&(vertex, _)| vertex as usize);
-        if members().any(|vertex| displacement[vertex] == DVec3::ZERO) {
-            members().for_each(|vertex| displacement[vertex] = DVec3::ZERO);
+        if members().any(|vertex| is_shorter[vertex]) {
+            members().for_each(|vertex| is_shorter[vertex] = true);
         }
     }
+    let moves = displacement.iter_mut().zip(is_shorter);
+    moves
+        .filter(|(_, is_shorter)| *is_shorter)
+        .for_each(|(d, _)| *d *= share);
 }

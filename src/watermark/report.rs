@@ -167,6 +167,8 @@ pub struct EmbedReport {
     /// The largest angle, in degrees, by which a triangle turned that is no sliver. At most 10 at the subtle and balanced strengths, 20 at
     /// the strong one; none turns over.
     pub worst_turn_degrees: f64,
+    /// Pairs of triangles of one part that cut each other now, and neither did nor touched before: none.
+    pub new_intersections: usize,
     /// What may be seen, in sentences: nothing, but for strengths that are given as a number. And what is strewn far from the model.
     pub warnings: Vec<String>,
     /// The strength that was asked for.

@@ -20,7 +20,7 @@ environment() {
   "$folder/$1/bin/pip" install --quiet --no-deps --requirement "$here/$2"
   "$folder/$1/bin/python" -c "import $3"
 }
-environment python requirements.txt "open3d, pymeshlab, trimesh"
+environment python requirements.txt "fast_simplification, open3d, pymeshlab, trimesh"
 if [ "$blender" = --blender ]; then
   environment blender requirements-blender.txt bpy
 fi

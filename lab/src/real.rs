@@ -29,13 +29,16 @@ enum Program {
     MeshLab,
     Open3d,
     Trimesh,
+    FastSimplification,
     Blender,
 }
 
-use Program::{Blender, GltfTransform, Gltfpack, MeshLab, Meshoptimizer, Open3d, Trimesh};
+use Program::{
+    Blender, FastSimplification, GltfTransform, Gltfpack, MeshLab, Meshoptimizer, Open3d, Trimesh,
+};
 
 /// Every row: a program, and what it is told.
-const ROWS: [(Program, &str); 44] = [
+const ROWS: [(Program, &str); 47] = [
     (GltfTransform, "weld"),
     (GltfTransform, "unweld"),
     (GltfTransform, "dedup"),
@@ -91,6 +94,9 @@ const ROWS: [(Program, &str); 44] = [
     (Trimesh, "obj"),
     (Trimesh, "stl"),
     (Trimesh, "ply"),
+    (FastSimplification, "target_reduction=0.5"),
+    (FastSimplification, "target_reduction=0.7"),
+    (FastSimplification, "target_reduction=0.9"),
     (Blender, "re-export"),
     (Blender, "transform_apply"),
     (Blender, "DECIMATE ratio=0.5"),
@@ -110,6 +116,7 @@ impl Program {
             MeshLab => "MeshLab",
             Open3d => "Open3D",
             Trimesh => "trimesh",
+            FastSimplification => "fast_simplification",
             Blender => "Blender",
         }
     }
@@ -123,6 +130,7 @@ impl Program {
             MeshLab => "pymeshlab",
             Open3d => "open3d-cpu",
             Trimesh => "trimesh",
+            FastSimplification => "fast-simplification",
             Blender => "bpy",
         }
     }
@@ -160,6 +168,7 @@ impl Program {
             MeshLab => python("python", "in_meshlab.py"),
             Open3d => python("python", "in_open3d.py"),
             Trimesh => python("python", "round_trip.py"),
+            FastSimplification => python("python", "in_fast_simplification.py"),
             Blender => python("blender", "in_blender.py"),
         };
         match self {

@@ -14,11 +14,14 @@ use meshmark::{Carrier, Strength, Verdict, detect};
 use rayon::prelude::*;
 use std::fmt::Write;
 
+type Made = Box<dyn Fn(&Mesh, u64) -> Mesh + Send + Sync>;
+type Then = fn(&Mesh) -> Mesh;
+
 /// How a suspect is made, and what is done to it and to the plain one alike.
 struct Row {
     name: String,
-    make: Box<dyn Fn(&Mesh, u64) -> Mesh + Send + Sync>,
-    then: fn(&Mesh) -> Mesh,
+    make: Made,
+    then: Then,
 }
 
 fn as_it_is(mesh: &Mesh) -> Mesh {
@@ -36,9 +39,6 @@ fn to_a_third(mesh: &Mesh) -> Mesh {
 fn remeshed(mesh: &Mesh) -> Mesh {
     remesh(mesh, 0.01)
 }
-
-type Made = Box<dyn Fn(&Mesh, u64) -> Mesh + Send + Sync>;
-type Then = fn(&Mesh) -> Mesh;
 
 fn rows() -> Vec<Row> {
     let mut rows = Vec::new();

@@ -2,6 +2,7 @@
 
 mod arc;
 mod curvature;
+mod cuts;
 mod deformation;
 mod dihedral;
 mod distortion;
@@ -32,6 +33,7 @@ pub use arc::refined;
 pub use curvature::{
     Curvature, CurvatureIntegrals, cotangents, curvature_integrals, fitted_curvature,
 };
+pub use cuts::cuts;
 pub use deformation::Deformation;
 pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};

@@ -169,6 +169,8 @@ export interface EmbedReport {
   worstTurnDegrees: number;
   /** Whether rounding positions as web pipelines do takes the mark: the forecast "web" is red. */
   isFragile: boolean;
+  /** Pairs of triangles of one part that cut each other now, and neither did nor touched before: none. */
+  newIntersections: number;
   /**
    * What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen; and what
    * is strewn far from the model, and what the copy lacks of its host (its compression).

@@ -3,7 +3,7 @@
 use super::{EmbedOptions, Error, Model};
 use crate::carrier::{Carrier, CarrierError, Host, Mark};
 use crate::document::Document;
-use crate::geometry::{Distortion, Leeway};
+use crate::geometry::{Distortion, Leeway, Parts, cuts};
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -95,42 +95,66 @@ pub(super) struct Moved {
     pub positions: Vec<DVec3>,
     /// What was asked for, of those that were moved.
     pub displacement: Vec<DVec3>,
+    /// Pairs of triangles that cut each other and did not before.
+    pub num_cuts: usize,
 }
 
-/// Displaces the vertices of a document that was just read. Those that rounding to the file's numbers takes too far, or whose triangles
-/// it turns too far, stay where they were.
+/// Triangles that would cut each other are brought back half of the way so often, before they are left where they were.
+const HALVINGS: usize = 4;
+
+/// Displaces the vertices of a document that was just read. Those that rounding to the file's numbers takes
+/// too far, or whose triangles it turns too far, stay where they were; those whose triangles would cut others of their part go less far.
 pub(super) fn write(
     model: &Model,
     document: &mut Document,
     scene: &Scene,
+    parts: &Parts,
     leeway: &Leeway,
     mut displacement: Vec<DVec3>,
 ) -> Result<Moved, Error> {
+    let mut time = 0;
     loop {
         scene.scatter(document, &displacement)?;
         let positions = scene.positions_in(document)?;
+        let is_moved = |vertex: &u32| displacement[*vertex as usize] != DVec3::ZERO;
         let mut beyond = leeway.beyond(&positions);
-        beyond.retain(|&vertex| displacement[vertex as usize] != DVec3::ZERO);
-        if beyond.is_empty() {
+        beyond.retain(is_moved);
+        let cuts = cuts(&scene.mesh, parts, &positions);
+        let corners = |triangle: u32| scene.mesh.triangles[triangle as usize];
+        let mut cut: Vec<u32> = cuts.iter().flatten().flat_map(|&t| corners(t)).collect();
+        cut.retain(is_moved);
+        if beyond.is_empty() && cut.is_empty() {
             return Ok(Moved {
                 positions,
                 displacement,
+                num_cuts: cuts.len(),
             });
         }
-        freeze(&mut displacement, &scene.admissible, &beyond);
+        let share = if time < HALVINGS { 0.5 } else { 0.0 };
+        shorten(&mut displacement, &scene.admissible, &cut, share);
+        shorten(&mut displacement, &scene.admissible, &beyond, 0.0);
         *document = Document::read(model.bytes, model.files)?;
+        time += 1;
     }
 }
 
-/// Leaves vertices, and those that move with them, where they are.
-fn freeze(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32]) {
+/// Leaves vertices, and those that move with them, a share of their movement.
+fn shorten(displacement: &mut [DVec3], admissible: &Admissible, vertices: &[u32], share: f64) {
+    if vertices.is_empty() {
+        return;
+    }
+    let mut is_shorter = vec![false; displacement.len()];
     for &vertex in vertices {
-        displacement[vertex as usize] = DVec3::ZERO;
+        is_shorter[vertex as usize] = true;
     }
     for orbit in &admissible.orbits {
         let members = || orbit.members.iter().map(|&(vertex, _)| vertex as usize);
-        if members().any(|vertex| displacement[vertex] == DVec3::ZERO) {
-            members().for_each(|vertex| displacement[vertex] = DVec3::ZERO);
+        if members().any(|vertex| is_shorter[vertex]) {
+            members().for_each(|vertex| is_shorter[vertex] = true);
         }
     }
+    let moves = displacement.iter_mut().zip(is_shorter);
+    moves
+        .filter(|(_, is_shorter)| *is_shorter)
+        .for_each(|(d, _)| *d *= share);
 }

@@ -60,6 +60,7 @@ fn embed_in(
                 written,
                 unshown,
                 strays,
+                num_cuts,
             },
         read_back,
     } = match hold(&mut model, payload, key, options) {
@@ -83,6 +84,7 @@ fn embed_in(
         max_movement: distortion.max_rel * diagonal(&host.positions),
         worst_part_rel: deformation.worst_part,
         worst_turn_degrees: deformation.worst_turn,
+        new_intersections: num_cuts,
         is_fragile,
         warnings: warnings(&deformation, payload, is_fragile)
             .into_iter()

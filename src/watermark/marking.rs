@@ -1,6 +1,6 @@
 //! Marking: read, displace, write, and read back as any detector would.
 
-use super::displace::{displacement, write};
+use super::displace::{Moved, displacement, write};
 use super::read_back::{is_read, is_seen_at_once};
 use super::report::Unshown;
 use super::unshown::mark_unshown;
@@ -78,6 +78,8 @@ pub(super) struct Marked {
     pub unshown: Vec<Unshown>,
     /// Where strays lie, in words.
     pub strays: Option<String>,
+    /// Pairs of triangles that cut each other and did not before.
+    pub num_cuts: usize,
 }
 
 /// Reads, displaces and writes.
@@ -106,7 +108,11 @@ fn mark(
     let displacement = displacement(&scene, &leeway, &mark, payload.is_some(), options, model)?;
 
     model.step(Stage::Write, 0.0)?;
-    let positions = write(model, &mut document, &scene, &leeway, displacement)?.positions;
+    let Moved {
+        positions,
+        num_cuts,
+        ..
+    } = write(model, &mut document, &scene, &parts, &leeway, displacement)?;
     drop(leeway);
     let unshown = mark_unshown(model, &mut document, &scene, &mark, payload, options)?;
     let strays = scene.strays_in_words();
@@ -122,5 +128,6 @@ fn mark(
         written,
         unshown,
         strays,
+        num_cuts,
     })
 }

@@ -130,7 +130,7 @@ pub fn embed_note<'a>(
     let leeway = Leeway::new(&scene.mesh, &parts, Bounds::STRONG);
     leeway.keep(&scene.mesh.positions, &mut displacement, &scene.admissible);
     model.step(Stage::Write, 0.0)?;
-    let positions = write(&model, &mut document, &scene, &leeway, displacement)?.positions;
+    let positions = write(&model, &mut document, &scene, &parts, &leeway, displacement)?.positions;
     let marked = scene.mesh.with_positions(positions);
     let deformation = Deformation::between(&scene.mesh, &parts, &marked.positions);
     let distortion = Distortion::between(&scene.mesh.positions, &marked.positions);

@@ -189,6 +189,8 @@ pub struct EmbedReport {
     pub worst_turn_degrees: f64,
     /// Whether rounding positions as web pipelines do takes the mark: the forecast `web` is red.
     pub is_fragile: bool,
+    /// Pairs of triangles of one part that cut each other now, and neither did nor touched before: none.
+    pub new_intersections: usize,
     /// What its owner should know, in sentences: that the mark is fragile, that it holds no payload, that it may be seen, what is strewn far from
     /// the model.
     pub warnings: Vec<String>,

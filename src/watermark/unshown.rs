@@ -60,13 +60,14 @@ fn marked(
     let Ok(scene) = Scene::of_mesh(&document, mesh) else {
         return Ok(None);
     };
-    let leeway = Leeway::new(&scene.mesh, &scene.parts(), options.bounds()?);
+    let parts = scene.parts();
+    let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
     let displacement = match displacement(&scene, &leeway, mark, payload.is_some(), options, model)
     {
         Err(refusal) if refusal.is_of_the_model() => return Ok(None),
         displacement => displacement?,
     };
-    let moved = write(model, &mut document, &scene, &leeway, displacement)?;
+    let moved = write(model, &mut document, &scene, &parts, &leeway, displacement)?;
     let mesh = scene.mesh.with_positions(moved.positions);
     drop(leeway);
     let is_read = is_seen_at_once(&mesh, mark.key, payload, model)?;

@@ -4,7 +4,7 @@ use crate::support::fixtures::{key, payload, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::noise;
 use meshmark::internals::document::Document;
-use meshmark::internals::geometry::{Bounds, Deformation, Leeway, Parts, diagonal};
+use meshmark::internals::geometry::{Bounds, Deformation, Leeway, Parts, cuts, diagonal};
 use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, EmbedReport, Strength, embed, embed_note};
@@ -176,4 +176,65 @@ fn leeway_names_what_is_beyond() {
     assert!(strong(&mesh).beyond(&after).is_empty());
     after[5] += DVec3::X * 0.05 * diagonal(&mesh.positions);
     assert!(strong(&mesh).beyond(&after).contains(&5));
+}
+
+/// A plate of two sheets that hang together at their rim, so many diagonals apart.
+fn plate(thickness: f64) -> Mesh {
+    shapes::cuboid(DVec3::new(1.0, 1.0, thickness), [12, 12, 1])
+}
+
+/// A sheet that is pushed through the other one of its part cuts it, along the way and not at its neighbours; one that lay upon it did before.
+#[wasm_bindgen_test(unsupported = test)]
+fn cuts_are_where_a_surface_goes_through_itself() {
+    let num_cuts = |mesh: &Mesh, depth: f64| {
+        let middle = |p: &DVec3| p.x.abs() < 0.1 && p.y.abs() < 0.1 && p.z > 0.0;
+        let pushed = |p: &DVec3| if middle(p) { *p - DVec3::Z * depth } else { *p };
+        let after: Vec<DVec3> = mesh.positions.iter().map(pushed).collect();
+        assert_ne!(after, mesh.positions);
+        cuts(mesh, &Parts::new(mesh), &after).len()
+    };
+    let thin = plate(0.01);
+    assert_eq!(num_cuts(&thin, 0.009), 0);
+    assert!(num_cuts(&thin, 0.02) > 3);
+    // The parts of a scene may touch, and move into each other.
+    let two = Mesh::joined([thin.clone(), moved(&thin, DVec3::Z * 0.0101)]);
+    let mut after = two.positions.clone();
+    for position in &mut after[..thin.positions.len()] {
+        position.z += 0.001;
+    }
+    assert!(cuts(&two, &Parts::new(&two), &after).is_empty());
+}
+
+fn moved(mesh: &Mesh, by: DVec3) -> Mesh {
+    mesh.with_positions(mesh.positions.iter().map(|p| *p + by).collect())
+}
+
+/// Whatever the strength: noise as strong makes these models cut themselves, the mark does not.
+#[wasm_bindgen_test(unsupported = test)]
+fn cuts_are_none_that_a_mark_makes() {
+    let thin = shapes::asteroid(40, 60);
+    let flat = thin
+        .positions
+        .iter()
+        .map(|p| *p * DVec3::new(1.0, 1.0, 0.02));
+    for (name, mesh) in [
+        ("a thin disc", thin.with_positions(flat.collect())),
+        ("a machined part", shapes::cad_part()),
+    ] {
+        let shaken = noise(&mesh, 0.01, 3).positions;
+        assert!(
+            !cuts(&mesh, &Parts::new(&mesh), &shaken).is_empty(),
+            "{name}"
+        );
+        for strength in [Strength::STRONG, Strength::new(0.004).unwrap()] {
+            let options = EmbedOptions::default().with_strength(strength);
+            let marked = embed(&to_glb(&mesh), payload(), &key(1), &options).unwrap();
+            let [host, after] = [&to_glb(&mesh), &marked.model].map(|bytes| {
+                let document = Document::read(bytes, &Default::default()).unwrap();
+                Scene::gather(&document).unwrap().mesh
+            });
+            let seen = cuts(&host, &Parts::new(&host), &after.positions).len();
+            assert_eq!((seen, marked.report.new_intersections), (0, 0), "{name}");
+        }
+    }
 }

@@ -18,6 +18,9 @@ pub struct Embed {
     input: PathBuf,
     #[command(flatten)]
     output: Output,
+    /// Write a model without compression, whatever the host has
+    #[arg(long)]
+    decompress: bool,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -37,11 +40,16 @@ impl Embed {
         let options = EmbedOptions::default()
             .with_strength(self.strength)
             .with_carriers(self.carriers);
-        let host = open(&self.input)?;
-        let marked = embed(host.model(&mut clock), payload, &key, &options)?;
+        let mut host = open(&self.input)?;
+        if self.decompress {
+            host.decompress()?;
+        }
+        let mut marked = embed(host.model(&mut clock), payload, &key, &options)?;
         let stored = self
             .output
             .store(&self.input, &host, &marked.model, &marked.files)?;
+        marked.report.host_sha256 = host.sha256;
+        marked.report.marked_sha256.clone_from(&stored.sha256);
         Report::stored(&marked.report, &stored, clock)
     }
 }

@@ -59,7 +59,7 @@ for (const [name, transforms] of Object.entries(variants)) {
     const { model: marked, report } = embed(model, TAG, key);
     t.diagnostic(`${model.length} bytes, marked ${marked.length}, ln p ${report.readBack.lnP.toFixed(1)}`);
     assert.deepEqual(report.warnings, []);
-    assert.ok(marked.length < 1.07 * model.length, `${marked.length} bytes of ${model.length}`);
+    assert.ok(marked.length < 1.1 * model.length, `${marked.length} bytes of ${model.length}`); // a moved surface is less regular
     await assertNoNewErrors(model, marked);
     assert.equal(detect(marked, key).tag, TAG);
     // Others decode what was encoded here to what is decoded here.

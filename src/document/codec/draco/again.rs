@@ -193,7 +193,7 @@ fn grid_bits(values: &[f32], num_components: usize) -> i32 {
         return if values.is_empty() { 0 } else { 1 };
     }
     let fits = |bits: &i32| {
-        let steps = f64::from((1_u32 << bits) - 1);
+        let steps = f64::from((1_u32 << bits).saturating_sub(1));
         // What 32-bit floats round, in steps.
         let tolerance = 4.0 * largest * f64::from(f32::EPSILON) / width * steps + 1e-3;
         tolerance < 0.25

@@ -3,6 +3,7 @@
 mod again;
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use draco_core::{
     DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder, PointAttribute, PointIndex,
@@ -51,13 +52,11 @@ pub(super) fn decode(root: &mut Value, repacking: &mut Repacking) -> Result<(), 
             let Some(stated) = stated(root, &place)? else {
                 continue;
             };
-            if !known.contains_key(&stated.view) {
-                let mesh = decoded(root, &stated, repacking)?;
-                known.insert(stated.view, mesh);
-            }
-            if let Some(mesh) = known.get(&stated.view) {
-                place_primitive(root, &place, &stated, mesh, &mut filled, repacking)?;
-            }
+            let mesh = match known.entry(stated.view) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(slot) => slot.insert(decoded(root, &stated, repacking)?),
+            };
+            place_primitive(root, &place, &stated, mesh, &mut filled, repacking)?;
         }
     }
     Ok(())

@@ -12,4 +12,4 @@ macro_rules! room {
     )* };
 }
 
-room!(attack carrier code detection document evidence geometry key mesh paper progress scene);
+room!(attack carrier code detection digest document evidence geometry key mesh paper progress scene);

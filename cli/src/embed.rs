@@ -18,6 +18,9 @@ pub struct Embed {
     input: PathBuf,
     #[command(flatten)]
     output: Output,
+    /// Write a model without compression, whatever the host has
+    #[arg(long)]
+    decompress: bool,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -41,11 +44,16 @@ impl Embed {
             .with_strength(self.strength)
             .with_carriers(self.carriers);
         options.max_movement = self.max_movement;
-        let host = open(&self.input)?;
-        let marked = embed(host.model(&mut clock), payload, &key, &options)?;
+        let mut host = open(&self.input)?;
+        if self.decompress {
+            host.decompress()?;
+        }
+        let mut marked = embed(host.model(&mut clock), payload, &key, &options)?;
         let stored = self
             .output
             .store(&self.input, &host, &marked.model, &marked.files)?;
+        marked.report.host_sha256 = host.sha256;
+        marked.report.marked_sha256.clone_from(&stored.sha256);
         Ok(Report::stored(&marked.report, &stored, clock)?.with_fragile(marked.report.is_fragile))
     }
 }

@@ -4,10 +4,11 @@ use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::format::{Format, Wrapping, recognize, unwrap};
 use crate::surface::Triangles;
+use meshmark::internals::digest::sha256;
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::Scene;
-use meshmark::{Files, Model, Surface, Suspect, file_names};
+use meshmark::{Files, Model, Surface, Suspect, decompress, file_names};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
@@ -19,6 +20,8 @@ pub struct Opened {
     bytes: Vec<u8>,
     files: Files,
     wrapping: Wrapping,
+    /// Of the file on disk.
+    pub sha256: String,
 }
 
 /// What is to be checked, as it was found on disk.
@@ -33,6 +36,14 @@ impl Opened {
         Model::new(&self.bytes)
             .with_files(&self.files)
             .with_progress(clock)
+    }
+
+    /// Takes the compression out of it.
+    pub fn decompress(&mut self) -> Result<(), Failure> {
+        let (bytes, files) = decompress(Model::new(&self.bytes).with_files(&self.files))?;
+        self.bytes = bytes;
+        self.files.extend(files);
+        Ok(())
     }
 
     /// A changed model in what this one came wrapped in.
@@ -68,34 +79,56 @@ impl Found {
 /// A model and the external buffers that it names, which are looked for beside it.
 pub fn open(path: &Path) -> Result<Opened, Failure> {
     match find(path)? {
-        (Format::Gltf, bytes, wrapping) => with_files(path, bytes, wrapping),
-        (format, ..) => Err(format.refused(path)),
+        (Format::Gltf, content) => with_files(path, content),
+        (format, _) => Err(format.refused(path)),
     }
 }
 
 /// What is to be checked: glTF, or a surface in another format.
 pub fn open_suspect(path: &Path) -> Result<Found, Failure> {
-    let (format, bytes, wrapping) = find(path)?;
+    let (format, content) = find(path)?;
     Ok(match format {
-        Format::Gltf => Found::Model(with_files(path, bytes, wrapping)?),
-        format => Found::Surface(Triangles::read(path, format, &bytes)?),
+        Format::Gltf => Found::Model(with_files(path, content)?),
+        format => Found::Surface(Triangles::read(path, format, &content.bytes)?),
     })
 }
 
-/// A file's kind, its content, and what that was wrapped in.
-fn find(path: &Path) -> Result<(Format, Vec<u8>, Wrapping), Failure> {
-    let (bytes, wrapping) = unwrap(path, load(path)?)?;
+/// What is in a file.
+struct Content {
+    bytes: Vec<u8>,
+    wrapping: Wrapping,
+    sha256: String,
+}
+
+/// A file's kind and its content.
+fn find(path: &Path) -> Result<(Format, Content), Failure> {
+    let file = load(path)?;
+    let sha256 = sha256(&file);
+    let (bytes, wrapping) = unwrap(path, file)?;
     if bytes.starts_with(EVIDENCE) {
         return Err(Failure::NotAsked(path.to_owned()));
     }
-    Ok((recognize(path, &bytes)?, bytes, wrapping))
+    let format = recognize(path, &bytes)?;
+    Ok((
+        format,
+        Content {
+            bytes,
+            wrapping,
+            sha256,
+        },
+    ))
 }
 
-fn with_files(path: &Path, model: Vec<u8>, wrapping: Wrapping) -> Result<Opened, Failure> {
+fn with_files(path: &Path, content: Content) -> Result<Opened, Failure> {
+    let Content {
+        bytes,
+        wrapping,
+        sha256,
+    } = content;
     let mut files = Files::new();
     let mut known = BTreeSet::new();
     // A model that cannot be read names no files; whoever reads it next says what is wrong.
-    for uri in file_names(&model).unwrap_or_default() {
+    for uri in file_names(&bytes).unwrap_or_default() {
         let buffer = inside(path, &uri)?;
         // A small model could have a large file loaded as often as it finds another name for it.
         if let Ok(place) = buffer.canonicalize()
@@ -107,9 +140,10 @@ fn with_files(path: &Path, model: Vec<u8>, wrapping: Wrapping) -> Result<Opened,
         files.insert(uri, load(&buffer)?);
     }
     Ok(Opened {
-        bytes: model,
+        bytes,
         files,
         wrapping,
+        sha256,
     })
 }
 

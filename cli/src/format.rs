@@ -248,6 +248,7 @@ fn other_kind(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 mod tests {
     use super::*;
 

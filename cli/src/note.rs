@@ -46,8 +46,10 @@ impl Note {
             } => {
                 let key = owner.key()?;
                 let host = open(&input)?;
-                let noted = embed_note(host.model(&mut clock), &text, &key)?;
+                let mut noted = embed_note(host.model(&mut clock), &text, &key)?;
                 let stored = Output::to(output).store(&input, &host, &noted.model, &noted.files)?;
+                noted.report.host_sha256 = host.sha256;
+                noted.report.marked_sha256.clone_from(&stored.sha256);
                 Report::stored(&noted.report, &stored, clock)
             }
             Note::Read { input, owner } => {

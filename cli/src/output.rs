@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::file::{Opened, inside, load};
 use clap::Args;
 use meshmark::Files;
+use meshmark::internals::digest::sha256;
 use meshmark::internals::document::Document;
 use serde::Serialize;
 use std::fs;
@@ -30,6 +31,9 @@ pub struct Stored {
     written: Vec<String>,
     /// What the model names and was not written beside it, because it is not beside the input, or lies outside of its folder.
     missing: Vec<String>,
+    /// Of the model's file.
+    #[serde(skip)]
+    pub sha256: String,
 }
 
 impl Output {
@@ -82,7 +86,11 @@ impl Output {
         }
         let written = plan.files.iter().map(|file| file.name.clone()).collect();
         plan.carry_out()?;
-        Ok(Stored { written, missing })
+        Ok(Stored {
+            written,
+            missing,
+            sha256: sha256(&wrapped),
+        })
     }
 }
 

@@ -205,6 +205,7 @@ fn ply(bytes: &[u8]) -> Result<Triangles, String> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 mod tests {
     use super::*;
 

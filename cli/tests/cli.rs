@@ -655,3 +655,36 @@ fn cli_reads_suspects_in_other_formats() {
         (2, &json!("file.damaged"))
     );
 }
+
+/// A host that comes wrapped goes wrapped, and the report's digests are of the files on disk.
+#[test]
+fn cli_wraps_what_came_wrapped() {
+    let here = Folder::new("wrapped");
+    let gzip = |bytes: &[u8]| {
+        let mut writer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        std::io::Write::write_all(&mut writer, bytes).unwrap();
+        writer.finish().unwrap()
+    };
+    fs::write(here.path("model.glb.gz"), gzip(&meshmark::demo_model())).unwrap();
+    let (code, report, said) = here.run(&format!("embed model.glb.gz marked.glb.gz {ADA} --tag A"));
+    assert_eq!(code, 0, "{said}");
+    let marked = fs::read(here.path("marked.glb.gz")).unwrap();
+    assert_eq!(marked[..2], [0x1f, 0x8b]);
+    for (name, digest) in [
+        ("model.glb.gz", "hostSha256"),
+        ("marked.glb.gz", "markedSha256"),
+    ] {
+        let bytes = fs::read(here.path(name)).unwrap();
+        assert_eq!(
+            report[digest],
+            meshmark::internals::digest::sha256(&bytes),
+            "{name}"
+        );
+    }
+    let (code, ..) = here.run(&format!("extract marked.glb.gz {ADA}"));
+    assert_eq!(code, 0);
+    // Nothing is compressed here, so nothing is taken out.
+    let (_, plain, _) = here.run(&format!("embed model.glb a.glb {ADA} --tag A"));
+    let (_, same, _) = here.run(&format!("embed model.glb b.glb --decompress {ADA} --tag A"));
+    assert_eq!(plain["markedSha256"], same["markedSha256"]);
+}

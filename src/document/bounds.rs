@@ -25,9 +25,19 @@ pub(super) fn correct(
             .get(slot.storage)
             .is_some_and(|storage| storage.has_changed(slot.offset, size))
     };
-    if !slots.iter().flatten().any(has_changed) {
-        return;
+    if slots.iter().flatten().any(has_changed) {
+        make_true(accessor, &accessor.bounds, slots, storages, splice);
     }
+}
+
+/// Makes bounds true that stand in these places of a text.
+pub(super) fn make_true(
+    accessor: &Accessor,
+    spans: &[Option<Range<usize>>; 2],
+    slots: &[Option<Slot>],
+    storages: &[Storage],
+    splice: &mut Splice,
+) {
     let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     let [lows, highs] = &mut bounds;
     for slot in slots {
@@ -42,7 +52,7 @@ pub(super) fn correct(
             *high = high.max(component);
         }
     }
-    for (span, values) in accessor.bounds.iter().zip(bounds) {
+    for (span, values) in spans.iter().zip(bounds) {
         if let Some(span) = span
             && values.iter().all(|value| value.is_finite())
         {

@@ -114,6 +114,8 @@ pub struct Document {
 struct Packed {
     model: Vec<u8>,
     extensions: Vec<&'static str>,
+    #[cfg(feature = "codec")]
+    host: codec::Host,
 }
 
 impl Document {
@@ -133,6 +135,10 @@ impl Document {
             let packed = Packed {
                 model: model.to_vec(),
                 extensions: unpacked.extensions,
+                host: codec::Host {
+                    parts,
+                    files: files.clone(),
+                },
             };
             return Self::of_parts(unpacked.parts, &unpacked.files, Some(packed));
         }
@@ -223,8 +229,73 @@ impl Document {
                 files: Files::new(),
                 unpacked: Vec::new(),
             }),
+            #[cfg(feature = "codec")]
+            Some(packed) => match self.write_packed(packed)? {
+                Some(written) => Ok(written),
+                None => self.write_plain(),
+            },
             _ => self.write_plain(),
         }
+    }
+
+    /// Writes the document compressed as its host was; `None` where that cannot be done. What a decoder makes of it decides the bounds: codecs
+    /// may round.
+    #[cfg(feature = "codec")]
+    fn write_packed(&self, packed: &Packed) -> Result<Option<Written>, DocumentError> {
+        let host = &packed.host;
+        let ([storage], true) = (self.storages.as_slice(), self.has_buffer_of_its_own()) else {
+            return Ok(None);
+        };
+        let Some(again) = host.packed(&self.text, storage)? else {
+            return Ok(None);
+        };
+        let model = |splice: Splice| {
+            let mut text = splice.finish();
+            if self.container == Container::Glb && text.len() != host.parts.text.len() {
+                container::pad(&mut text);
+            }
+            container::join(
+                self.container,
+                &text,
+                again.chunk.as_deref(),
+                &self.rest,
+                &self.tail,
+            )
+        };
+        let mut files = host.files.clone();
+        files.extend(again.files.clone());
+        let Ok(seen) = Self::read(&model(again.splice.clone())?, &files) else {
+            return Ok(None);
+        };
+        let root = Root::parse(&host.parts.text)?;
+        let mut splice = again.splice.clone();
+        for (accessor, stated) in self.accessors.iter().zip(&root.accessors) {
+            let slots = accessor.slots(&self.storages)?;
+            let size = accessor.format.position_size();
+            let has_changed = |slot: &Slot| storage.has_changed(slot.offset, size);
+            let is_changed =
+                self.sharing.is_position(accessor.index) && slots.iter().flatten().any(has_changed);
+            if let Some(accessor) = seen.accessors.get(accessor.index).filter(|_| is_changed) {
+                let spans = [stated.min, stated.max]
+                    .map(|bound| json::span(&host.parts.text, bound?.get()));
+                let slots = accessor.slots(&seen.storages)?;
+                bounds::make_true(accessor, &spans, &slots, &seen.storages, &mut splice);
+            }
+        }
+        Ok(Some(Written {
+            model: model(splice)?,
+            files: again.files,
+            unpacked: Vec::new(),
+        }))
+    }
+
+    /// Whether the plain data stands apart from the text.
+    #[cfg(feature = "codec")]
+    fn has_buffer_of_its_own(&self) -> bool {
+        let origins = self.storages.iter().map(|storage| &storage.origin);
+        origins
+            .into_iter()
+            .all(|origin| !matches!(origin, Origin::DataUri(_)))
     }
 
     /// Writes the document as [`write`](Self::write) does, but without compression even if nothing changed.

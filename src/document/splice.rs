@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::order::order_by;
 
 /// A text and what is to be replaced in it.
+#[derive(Clone)]
 pub(super) struct Splice<'t> {
     pub text: &'t str,
     edits: Vec<(Range<usize>, String)>,

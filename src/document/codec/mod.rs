@@ -2,16 +2,20 @@
 //!
 //! [`unpacked`] makes of a compressed document a plain one, with all data in one buffer: text and bytes that the rest of the room reads
 //! as any other. Nothing that a codec gives is trusted: its lengths are checked here, and the plain document is validated like one that
-//! came so. What the codecs may make of a small file is limited before it is made.
+//! came so. [`Host::packed`] compresses what changed again, as it was. What the codecs may make of a small file is limited before it is made.
 
 mod draco;
 mod meshopt;
+mod pack;
 mod repack;
+mod streams;
 
 use serde_json::Value;
 
 use super::container::{Container, Parts};
 use super::{DocumentError, Files};
+pub(super) use streams::Host;
+
 use repack::{Repacked, Repacking};
 
 /// The most bytes that all compressed data of a file may become: more than the largest scene that is read.

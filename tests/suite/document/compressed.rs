@@ -189,82 +189,164 @@ fn compressed_geometry_is_what_was_compressed() {
     }
 }
 
+/// The JSON text of a .glb.
+fn text_of(model: &[u8]) -> Value {
+    let length = u32::from_le_bytes(*model[12..].first_chunk().expect("a length")) as usize;
+    serde_json::from_slice(&model[20..20 + length]).expect("JSON")
+}
+
+/// Takes out of a JSON text what may differ: where bytes are, and the bounds of the positions.
+fn without_places(mut json: Value) -> Value {
+    fn forget(value: &mut Value) {
+        match value {
+            Value::Object(members) => {
+                members.retain(|name, _| name != "byteOffset" && name != "byteLength");
+                members.values_mut().for_each(forget);
+            }
+            Value::Array(items) => items.iter_mut().for_each(forget),
+            _ => {}
+        }
+    }
+    json["accessors"][0]["min"] = Value::Null;
+    json["accessors"][0]["max"] = Value::Null;
+    forget(&mut json);
+    json
+}
+
 #[wasm_bindgen_test(unsupported = test)]
-fn compressed_documents_are_written_as_they_were_or_plain() {
-    for (name, model, _) in all(&mesh()) {
+fn compressed_documents_are_written_as_they_were() {
+    for (name, model, tolerance) in all(&mesh()) {
         let mut document = Document::read(&model, &Files::new()).expect(name);
         let written = document.write().expect(name);
         assert_eq!(
             (written.model, written.unpacked),
-            (model, Vec::new()),
+            (model.clone(), Vec::new()),
             "{name}"
         );
-        let extension = document
-            .extensions_used()
-            .last()
-            .expect("extensions")
-            .clone();
         let mut positions = document.positions(0).expect(name);
-        positions[0] = [7.0, 8.0, 9.5];
+        positions[0][1] += 0.125;
         document.set_positions(0, &positions).expect(name);
         let written = document.write().expect(name);
-        assert_eq!(written.unpacked, [extension.as_str()], "{name}");
-        let text = String::from_utf8_lossy(&written.model);
-        assert!(
-            !text.contains("_compression") && text.contains(r#""name":"é""#),
-            "{name}: {text}"
-        );
-        assert!(
-            text.contains(r#""extensionsUsed":["KHR_mesh_quantization"]"#)
-                && !text.contains("extensionsRequired")
-        );
         let again = Document::read(&written.model, &Files::new()).expect(name);
-        assert_eq!(again.positions(0).expect(name), positions, "{name}");
-        assert_eq!(again.triangles(0, 0), document.triangles(0, 0), "{name}");
+        if name == "exponents" {
+            // A filter rounds: the copy is plain, and that is said.
+            assert_eq!(written.unpacked, ["KHR_meshopt_compression"]);
+            let text = text_of(&written.model).to_string();
+            assert!(
+                !text.contains("_compression") && text.contains(r#""name":"é""#),
+                "{text}"
+            );
+            assert!(
+                text.contains(r#""extensionsUsed":["KHR_mesh_quantization"]"#)
+                    && !text.contains("extensionsRequired")
+            );
+            assert_eq!(again.positions(0).expect(name), positions);
+            continue;
+        }
+        assert_eq!(written.unpacked, [""; 0], "{name}");
+        assert_eq!(
+            without_places(text_of(&written.model)),
+            without_places(text_of(&model)),
+            "{name}"
+        );
+        let ratio = written.model.len() as f64 / model.len() as f64;
+        assert!((0.97..1.03).contains(&ratio), "{name}: {ratio}");
+        // Codecs may order vertices anew: every one has to be somewhere.
+        let after = again.positions(0).expect(name);
+        assert_eq!(after.len(), positions.len(), "{name}");
+        for position in &positions {
+            let distance =
+                |other: &[f64; 3]| glam::DVec3::from(*other).distance(glam::DVec3::from(*position));
+            let nearest = after.iter().map(distance).fold(f64::INFINITY, f64::min);
+            assert!(nearest <= 2.0 * tolerance, "{name}: {nearest}");
+        }
+        let bound = |name: &str, pick: fn(f64, f64) -> f64, from: f64| {
+            let stated = text_of(&written.model)["accessors"][0][name].clone();
+            let stated: Vec<f64> = serde_json::from_value(stated).expect("numbers");
+            for (axis, stated) in stated.iter().enumerate() {
+                let found = after.iter().map(|position| position[axis]).fold(from, pick);
+                assert_eq!(*stated as f32, found as f32);
+            }
+        };
+        bound("min", f64::min, f64::INFINITY);
+        bound("max", f64::max, f64::NEG_INFINITY);
     }
 }
 
-/// A .gltf stays one: with its file, or with its data in the text.
+/// What follows the order of the vertices, and is not in the stream, would be torn from them.
+#[wasm_bindgen_test(unsupported = test)]
+fn compressed_primitives_with_companions_are_written_plain() {
+    let mesh = mesh();
+    let model = by_draco(&mesh, 7, 14);
+    let mut json = text_of(&model);
+    let length = json["bufferViews"][0]["byteLength"]
+        .as_u64()
+        .expect("a length") as usize;
+    let start = 28 + u32::from_le_bytes(*model[12..].first_chunk().expect("a length")) as usize;
+    let mut binary = model[start..start + length].to_vec();
+    binary.resize(length.next_multiple_of(4), 0);
+    let (offset, count) = (binary.len(), mesh.positions.len());
+    binary.extend(vec![7; 4 * count]);
+    json["buffers"][0]["byteLength"] = json!(binary.len());
+    let views = json["bufferViews"].as_array_mut().expect("views");
+    views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": 4 * count }));
+    let accessors = json["accessors"].as_array_mut().expect("accessors");
+    accessors
+        .push(json!({ "bufferView": 1, "componentType": 5125, "count": count, "type": "SCALAR" }));
+    json["meshes"][0]["primitives"][0]["attributes"]["_ID"] = json!(2);
+    let model = packed(&json, binary);
+    let mut document = Document::read(&model, &Files::new()).expect("a document");
+    let mut positions = document.positions(0).expect("positions");
+    positions[5][0] += 0.25;
+    document.set_positions(0, &positions).expect("movable");
+    let written = document.write().expect("a written document");
+    assert_eq!(written.unpacked, ["KHR_draco_mesh_compression"]);
+    let again = Document::read(&written.model, &Files::new()).expect("a document");
+    assert_eq!(again.positions(0), Ok(positions));
+}
+
+/// A .gltf stays one, with its file.
 #[wasm_bindgen_test(unsupported = test)]
 fn compressed_gltf_stays_text() {
     let model = by_draco(&mesh(), 7, 14);
-    let length = u32::from_le_bytes(*model[12..].first_chunk().expect("a length")) as usize;
-    let mut json: Value = serde_json::from_slice(&model[20..20 + length]).expect("JSON");
-    let binary = model[20 + length + 8..].to_vec();
+    let mut json = text_of(&model);
     json["buffers"][0]["uri"] = json!("a%20b.bin");
-    let files = Files::from([("a b.bin".to_owned(), binary)]);
-    let mut document = Document::read(json.to_string().as_bytes(), &files).expect("a document");
+    let text = json.to_string();
+    let start = 28 + u32::from_le_bytes(*model[12..].first_chunk().expect("a length")) as usize;
+    let files = Files::from([("a b.bin".to_owned(), model[start..].to_vec())]);
+    let mut document = Document::read(text.as_bytes(), &files).expect("a document");
     let mut positions = document.positions(0).expect("positions");
     positions[0][0] += 0.25;
     document.set_positions(0, &positions).expect("movable");
-    let written = document.write().expect("a written document");
-    assert_eq!(written.files.keys().collect::<Vec<_>>(), ["a b.bin"]);
-    let again = Document::read(&written.model, &written.files).expect("a document");
-    assert_eq!(again.positions(0), Ok(positions));
-    assert_eq!(
-        Document::file_names(json.to_string().as_bytes()),
-        Ok(vec!["a b.bin".to_owned()])
-    );
+    for written in [document.write(), document.write_plain()] {
+        let written = written.expect("a written document");
+        assert_eq!(written.files.keys().collect::<Vec<_>>(), ["a b.bin"]);
+        let again = Document::read(&written.model, &written.files).expect("a document");
+        let count = again.positions(0).map(|positions| positions.len());
+        assert_eq!(count, Ok(positions.len()));
+        assert_eq!(
+            written.unpacked.is_empty(),
+            again.extensions_used().len() == 2
+        );
+    }
+    let names = Document::file_names(text.as_bytes());
+    assert_eq!(names, Ok(vec!["a b.bin".to_owned()]));
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn compressed_models_are_marked() {
     let mesh = shapes::asteroid(60, 70);
-    for (name, model, _) in all(&mesh).into_iter().step_by(4) {
+    for (name, model, _) in all(&mesh) {
         let tag = Payload::from_tag("ADA-1").expect("a tag");
         let marked = embed(&model, tag, &key(1), &EmbedOptions::default()).expect(name);
-        assert_eq!(
-            detect(&marked.model, &key(1), None).expect(name).verdict,
-            Verdict::Found
-        );
-        assert!(
-            marked
-                .report
-                .warnings
-                .iter()
-                .any(|words| words.contains("compress it again")),
-            "{name}"
-        );
+        let found = detect(&marked.model, &key(1), None).expect(name);
+        assert_eq!(found.verdict, Verdict::Found);
+        let mut warnings = marked.report.warnings.iter();
+        let says = warnings.any(|words| words.contains("compress it again"));
+        assert_eq!(says, name == "exponents", "{name}");
+        let ratio = marked.model.len() as f64 / model.len() as f64;
+        println!("{name}: {ratio:.3}");
+        assert!(says || ratio < 1.1, "{name}: {ratio}");
     }
 }
 

@@ -28,7 +28,6 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
     ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
     actions(...downloads(copy).map((name) => button(`Download ${name}`, () => onSave(name), "primary"))),
-    ...report.warnings.map((words) => h("p", { class: "hint" }, plain(words))),
     forecastList(report.forecast),
     numbers([
       ...readingRows(readBack),

@@ -81,13 +81,16 @@ let startingCodecs: Promise<void> | undefined;
 export function initCodecs(input?: InitInput): Promise<void> {
   startingCodecs ??= startCodecs(input).catch((cause: unknown) => {
     startingCodecs = undefined;
-    throw new MeshmarkError("init.failed", `The module for compressed models could not be loaded: ${String(cause)}`, null, { cause });
+    const known = asMeshmarkError(cause);
+    const words = `The module for compressed models could not be loaded: ${String(cause)}`;
+    throw known instanceof MeshmarkError ? known : new MeshmarkError("init.failed", words, null, { cause });
   });
   return startingCodecs;
 }
 
 async function startCodecs(input: InitInput = new URL("../wasm-codecs/codecs_bg.wasm", import.meta.url)): Promise<void> {
-  const codecs = (await import("../wasm-codecs/codecs.js")) as unknown as Module;
+  // @ts-ignore It has the types of the first module, and may be built after the package.
+  const codecs = (await import("../wasm-codecs/codecs.js")) as Module;
   await load(codecs, input);
   current = codecs;
   started = true;

@@ -1,6 +1,9 @@
 //! Primitives that Draco holds.
 
+mod again;
+
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use draco_core::{
     DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder, PointAttribute, PointIndex,
@@ -9,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::super::DocumentError;
 use super::repack::Repacking;
+use super::streams::{Host, Plain, Segment, Streams};
 use super::{damaged, list, take_extension, whole};
 
 const NAME: &str = "KHR_draco_mesh_compression";
@@ -48,13 +52,11 @@ pub(super) fn decode(root: &mut Value, repacking: &mut Repacking) -> Result<(), 
             let Some(stated) = stated(root, &place)? else {
                 continue;
             };
-            if !known.contains_key(&stated.view) {
-                let mesh = decoded(root, &stated, repacking)?;
-                known.insert(stated.view, mesh);
-            }
-            if let Some(mesh) = known.get(&stated.view) {
-                place_primitive(root, &place, &stated, mesh, &mut filled, repacking)?;
-            }
+            let mesh = match known.entry(stated.view) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(slot) => slot.insert(decoded(root, &stated, repacking)?),
+            };
+            place_primitive(root, &place, &stated, mesh, &mut filled, repacking)?;
         }
     }
     Ok(())
@@ -402,4 +404,97 @@ fn put(number: f64, component: Option<usize>, bytes: &mut Vec<u8>) {
         Some(5125) => bytes.extend((number as u32).to_le_bytes()),
         _ => bytes.extend((number as f32).to_le_bytes()),
     }
+}
+
+/// Whether a view holds a stream.
+pub(super) fn is_packed(root: &Value, view: usize) -> bool {
+    primitives(root).any(|(_, extension)| whole(extension, "bufferView") == Some(view))
+}
+
+/// The compressed primitives, with their extensions.
+fn primitives(root: &Value) -> impl Iterator<Item = (&Value, &Value)> {
+    let primitives = list(root, "meshes")
+        .iter()
+        .flat_map(|mesh| list(mesh, "primitives"));
+    primitives.filter_map(|primitive| Some((primitive, primitive.get("extensions")?.get(NAME)?)))
+}
+
+/// Encodes the primitives whose positions changed, with the method, the effort and the bits that they had. Whether that could be done: not
+/// where something uncompressed follows the order of their vertices.
+pub(super) fn encode(
+    root: &Value,
+    plain_root: &Value,
+    plain: &Plain,
+    host: &Host,
+    streams: &mut Streams,
+) -> bool {
+    let mut todo: Vec<(Segment, &Value, Vec<u8>)> = Vec::new();
+    for (primitive, extension) in primitives(root) {
+        let position = primitive
+            .get("attributes")
+            .and_then(|attributes| whole(attributes, "POSITION"));
+        let accessor = position.and_then(|position| list(plain_root, "accessors").get(position));
+        let view = accessor.and_then(|accessor| whole(accessor, "bufferView"));
+        let Some(bytes) = view.and_then(|view| plain.changed(view)) else {
+            continue;
+        };
+        let stream = whole(extension, "bufferView")
+            .and_then(|view| Segment::of(list(root, "bufferViews").get(view)?));
+        match stream {
+            Some(stream) if is_alone(root, primitive, extension) => {
+                todo.push((stream, extension, bytes.to_vec()))
+            }
+            _ => return false,
+        }
+    }
+    let jobs: Option<Vec<again::Job>> = todo
+        .iter()
+        .map(|(stream, extension, bytes)| {
+            again::Job::new(host.segment(root, *stream)?, extension, bytes)
+        })
+        .collect();
+    let Some(jobs) = jobs else { return false };
+    // Few distinct values fit a coarse grid too: the bits of the finest one are what the file was made with.
+    let bits = jobs.iter().map(|job| job.position_bits).max().unwrap_or(0);
+    for (job, (stream, ..)) in jobs.into_iter().zip(&todo) {
+        match job.encoded(bits) {
+            Some(encoded) => _ = streams.insert(*stream, encoded),
+            None => return false,
+        }
+    }
+    true
+}
+
+/// Whether the stream has all that follows the order of a primitive's vertices, and serves no other primitive.
+fn is_alone(root: &Value, primitive: &Value, extension: &Value) -> bool {
+    let count = |object: &Value| {
+        object
+            .get("attributes")
+            .and_then(Value::as_object)
+            .map_or(0, serde_json::Map::len)
+    };
+    let accessors = |primitive: &Value| -> Vec<u64> {
+        let attributes = primitive.get("attributes").and_then(Value::as_object);
+        let attributes = attributes
+            .into_iter()
+            .flat_map(serde_json::Map::values)
+            .chain(primitive.get("indices"));
+        attributes.filter_map(Value::as_u64).collect()
+    };
+    let own = accessors(primitive);
+    let all = list(root, "meshes")
+        .iter()
+        .flat_map(|mesh| list(mesh, "primitives"));
+    let uses = all
+        .flat_map(accessors)
+        .filter(|accessor| own.contains(accessor))
+        .count();
+    let view = extension.get("bufferView");
+    let streams = primitives(root)
+        .filter(|(_, other)| other.get("bufferView") == view)
+        .count();
+    count(primitive) == count(extension)
+        && primitive.get("targets").is_none()
+        && uses == own.len()
+        && streams == 1
 }

@@ -84,7 +84,9 @@ fn reports_below_found_do_not_follow_the_key() {
         assert_eq!(report["input"], input);
         let mut names: Vec<&String> = report.as_object().unwrap().keys().collect();
         names.sort();
-        let expected = ["input", "number", "reason", "sentence", "tag", "verdict"];
+        let expected = [
+            "foundIn", "input", "number", "reason", "sentence", "tag", "verdict",
+        ];
         assert_eq!(names, expected);
     }
 }

@@ -23,11 +23,10 @@ pub fn cuts(mesh: &Mesh, parts: &Parts, after: &[DVec3]) -> Vec<[u32; 2]> {
         if part == other && are_cut(corners, |v| after[v as usize], 0.0) {
             let touch = TOUCH * parts.diagonals[part as usize];
             if !are_cut(corners, |v| mesh.positions[v as usize], touch) {
-                cuts.push([a.min(b), a.max(b)]);
+                cuts.push([a, b]);
             }
         }
     });
-    cuts.sort_unstable();
     cuts
 }
 

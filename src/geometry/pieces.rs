@@ -46,8 +46,8 @@ impl Pieces {
             0 => edges.components(),
             _ => edges.winding().patches,
         };
-        let patches_of = |object: &Vec<usize>| {
-            let numbers = object.iter().flat_map(|&part| &parts[part]);
+        let patches_of = |object: &Vec<u32>| {
+            let numbers = object.iter().flat_map(|&part| &parts[part as usize]);
             let mut patches_of = by_name(numbers.map(|&number| (patches[number as usize], number)));
             if patches_of.len() == 1 {
                 patches_of.clear();
@@ -67,7 +67,7 @@ impl Pieces {
         let parts = parts(mesh, &Edges::new(mesh));
         let boxes = boxes(mesh, &parts);
         let [tight, objects, loose] = [0.5, 1.0, 2.0].map(|slack| objects_of(&boxes, slack));
-        let is_stable = |object: &&Vec<usize>| tight.contains(object) && loose.contains(object);
+        let is_stable = |object: &&Vec<u32>| tight.contains(object) && loose.contains(object);
         let stable = objects.iter().filter(is_stable);
         largest(stable.map(|object| joined(object, &parts)), mesh)
     }
@@ -76,8 +76,8 @@ impl Pieces {
 /// Triangles by their numbers.
 type Part = Vec<u32>;
 
-fn joined(object: &[usize], parts: &[Part]) -> Part {
-    let triangles = object.iter().flat_map(|&part| &parts[part]);
+fn joined(object: &[u32], parts: &[Part]) -> Part {
+    let triangles = object.iter().flat_map(|&part| &parts[part as usize]);
     triangles.copied().collect()
 }
 
@@ -127,7 +127,7 @@ fn boxes(mesh: &Mesh, parts: &[Part]) -> Vec<Option<Enclosing>> {
 }
 
 /// The parts of each object, by their places. `slack` multiplies the limits, and is 1 but where it is asked whether they matter.
-fn objects_of(boxes: &[Option<Enclosing>], slack: f64) -> Vec<Vec<usize>> {
+fn objects_of(boxes: &[Option<Enclosing>], slack: f64) -> Vec<Vec<u32>> {
     let mut sets = Sets::new(boxes.len());
     for (second, smaller) in (0..).zip(boxes) {
         for (first, larger) in (0..second).zip(boxes) {
@@ -138,14 +138,7 @@ fn objects_of(boxes: &[Option<Enclosing>], slack: f64) -> Vec<Vec<usize>> {
             }
         }
     }
-    let mut objects: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for part in 0..boxes.len() {
-        objects
-            .entry(sets.find(part as u32))
-            .or_default()
-            .push(part);
-    }
-    objects.into_values().collect()
+    by_name((0..boxes.len() as u32).map(|part| (sets.find(part), part)))
 }
 
 /// A box about a part, along the part's own axes: it turns with the part.

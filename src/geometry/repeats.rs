@@ -1,12 +1,13 @@
 //! Triangles that are there more than once, turned over or not: a person sees one.
 
 use crate::mesh::{Edges, Mesh};
+use crate::order::order_by;
 use glam::DVec3;
 
 /// Says of each triangle whether it is the first with its three vertices, and turns some; `None` if all are.
 ///
 /// Where both directions are there, the one that is left faces as the triangles of its patch do that are there in one; where there are
-/// none, or as many of each, so that the patch's volume about its centroid is positive. O(V + F log D), D the most triangles at a vertex.
+/// none, or as many of each, so that the patch's volume about its centroid is positive. O(F log F).
 pub fn without_repeats(mesh: &mut Mesh) -> Option<Vec<bool>> {
     let mut kept = vec![true; mesh.triangles.len()];
     let mut has_both = vec![false; mesh.triangles.len()];
@@ -27,28 +28,28 @@ pub fn without_repeats(mesh: &mut Mesh) -> Option<Vec<bool>> {
 
 /// The triangles by their vertices, lowest first: equal ones side by side, in their order.
 fn by_corners(mesh: &Mesh) -> Vec<([u32; 3], u32)> {
-    // A counting sort by the lowest vertex, whose few triangles are then sorted where they are.
-    let lowest = |triangle: &[u32; 3]| triangle[0].min(triangle[1]).min(triangle[2]) as usize;
-    let mut starts = vec![0u32; mesh.positions.len()];
-    for triangle in &mesh.triangles {
-        starts[lowest(triangle)] += 1;
+    let sorted = |triangle: u32| {
+        let [a, b, c] = mesh.triangles[triangle as usize];
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        [low, a ^ b ^ c ^ low ^ high, high]
+    };
+    let numbers = 0..mesh.triangles.len() as u32;
+    let side = |[low, middle, _]: [u32; 3]| u64::from(low) << 32 | u64::from(middle);
+    let by_side = order_by(numbers.map(|triangle| side(sorted(triangle))));
+    let mut all = Vec::with_capacity(by_side.len());
+    for same in by_side.chunk_by(|a, b| a.0 == b.0) {
+        let thirds = same
+            .iter()
+            .map(|&(_, triangle)| u64::from(sorted(triangle)[2]));
+        match same {
+            [(_, triangle)] => all.push((sorted(*triangle), *triangle)),
+            _ => all.extend(order_by(thirds).into_iter().map(|(_, place)| {
+                let triangle = same[place as usize].1;
+                (sorted(triangle), triangle)
+            })),
+        }
     }
-    let mut total = 0;
-    for start in &mut starts {
-        (*start, total) = (total, total + *start);
-    }
-    let mut sorted = vec![([0; 3], 0); total as usize];
-    for (triangle, number) in mesh.triangles.iter().zip(0..) {
-        let mut corners = *triangle;
-        corners.sort_unstable();
-        let slot = &mut starts[lowest(triangle)];
-        sorted[*slot as usize] = (corners, number);
-        *slot += 1;
-    }
-    for same in sorted.chunk_by_mut(|a, b| a.0[0] == b.0[0]) {
-        same.sort_unstable();
-    }
-    sorted
+    all
 }
 
 /// Whether the corners are the rising ones, turned about.

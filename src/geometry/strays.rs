@@ -1,8 +1,8 @@
 //! What is strewn: a few small parts far from the model, which converters leave. They say nothing of how large the model is.
 
 use crate::mesh::{Mesh, Sets};
+use crate::order::order_by;
 use glam::DVec3;
-use std::cmp::Reverse;
 
 /// A part of so many triangles could be a model.
 const FEW: usize = 100;
@@ -45,12 +45,12 @@ pub fn without_strays(mesh: &Mesh) -> Option<Vec<bool>> {
     for (&triangle, &name) in mesh.triangles.iter().zip(&names) {
         parts[name as usize].add(mesh.corners(triangle));
     }
-    let mut by_area: Vec<(u32, &Part)> = (0..).zip(&parts).collect();
-    by_area.sort_by_key(|(_, part)| Reverse(part.area.to_bits()));
-    let mut model = by_area.first()?.1.clone();
+    let by_area = order_by(parts.iter().map(|part| !part.area.to_bits()));
+    let mut model = parts[by_area.first()?.1 as usize].clone();
     let mut strays = Part::default();
     let mut stray: Vec<u32> = Vec::new();
-    for (name, part) in by_area {
+    for (_, name) in by_area {
+        let part = &parts[name as usize];
         if part.num_triangles < FEW && part.is_away_from(&model) {
             strays.area += part.area;
             strays.num_triangles += part.num_triangles;

@@ -21,7 +21,8 @@ fuzz_target!(|bytes: &[u8]| {
     let moved = scene
         .positions_in(&document)
         .expect("what was written is there");
-    let written = document.write().expect("a written document");
+    // A codec may order vertices anew.
+    let written = document.write_plain().expect("a written document");
     let again =
         Document::read(&written.model, &written.files).expect("what was written can be read");
     assert_eq!(

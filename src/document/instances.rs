@@ -1,6 +1,6 @@
 //! Instances of a mesh (`EXT_mesh_gpu_instancing`): each is a node below the one that states them.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use gltf::json::accessor::Type;
 
@@ -145,10 +145,13 @@ fn transforms(
             Ok(())
         })?;
     }
-    let mut known = BTreeSet::new();
+    // By their bytes as characters, one for each: the module has maps of texts anyway.
+    let mut known: BTreeMap<String, u64> = BTreeMap::new();
     placed.retain(|(translation, rotation, scale)| {
         let numbers = translation.iter().chain(rotation).chain(scale);
-        known.insert(numbers.map(|number| number.to_bits()).collect::<Vec<_>>())
+        let bytes = numbers.flat_map(|number| number.to_le_bytes());
+        let key = bytes.map(char::from).collect();
+        known.insert(key, 0).is_none()
     });
     let transform = |(translation, rotation, scale)| Transform::Decomposed {
         translation,

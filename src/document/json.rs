@@ -67,15 +67,17 @@ impl<'a, 'p> Object<'a, 'p> {
         })
     }
 
+    /// A member, if it is there. `null`, which no member of glTF may be, is what some exporters write for what is not.
     // Not inlined, for the sake of the WebAssembly module's size: there are some fifty calls.
     #[inline(never)]
     fn member(&self, name: &str) -> Option<&'a RawValue> {
-        self.members.get(name).copied()
+        let member = self.members.get(name).copied();
+        member.filter(|raw| raw.get() != "null")
     }
 
-    /// A member that may be absent. `null`, which no member of glTF may be, is what some exporters write for what is not there.
+    /// A member that may be absent.
     pub fn optional<T: FromJson<'a>>(&self, name: &str) -> Result<Option<T>, DocumentError> {
-        match self.member(name).filter(|raw| raw.get() != "null") {
+        match self.member(name) {
             Some(raw) => Ok(Some(T::from_json(raw, Place::Field(&self.place, name))?)),
             None => Ok(None),
         }

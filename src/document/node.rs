@@ -1,7 +1,5 @@
 //! Nodes (glTF 2.0 specification section 3.5).
 
-use std::collections::BTreeSet;
-
 use super::schema::{self, Root};
 use super::{DocumentError, item};
 
@@ -55,19 +53,27 @@ impl Transform {
 
 /// The nodes as the file states them: several may list the same.
 pub(super) fn stated(root: &Root) -> Result<Vec<Node>, DocumentError> {
+    let mut lister = vec![0; root.nodes.len()];
     let nodes = root.nodes.iter().enumerate();
     nodes
-        .map(|(index, node)| read_node(root, index, node))
+        .map(|(index, node)| read_node(root, index, node, &mut lister))
         .collect()
 }
 
-fn read_node(root: &Root, index: usize, node: &schema::Node) -> Result<Node, DocumentError> {
+/// A node, its children once each: `lister` has the number of the last node that listed each one.
+fn read_node(
+    root: &Root,
+    index: usize,
+    node: &schema::Node,
+    lister: &mut [usize],
+) -> Result<Node, DocumentError> {
+    let number = index.saturating_add(1);
     let mut children = Vec::with_capacity(node.children.len());
-    let mut known = BTreeSet::new();
     for (place, &child) in node.children.iter().enumerate() {
         let pointer = format_args!("/nodes/{index}/children/{place}");
         let (child, _) = item(&root.nodes, child, "nodes", pointer)?;
-        if known.insert(child) {
+        if let Some(last) = lister.get_mut(child).filter(|last| **last != number) {
+            *last = number;
             children.push(child);
         }
     }

@@ -18,6 +18,8 @@ const ARGUMENTS = [
   "--disable-sync",
 ];
 
+export const SLOW = 120_000;
+
 export function launch() {
   return chromium.launch({ executablePath: process.env.MESHMARK_CHROMIUM ?? installedChromium(), args: ARGUMENTS });
 }

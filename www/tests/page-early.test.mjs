@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { launch, serve } from "./browser.mjs";
+import { launch, serve, SLOW } from "./browser.mjs";
 
 const app = new URL("../app", import.meta.url);
 
@@ -17,6 +17,7 @@ test("the page is built before the study and the attacks are, and says so where 
   const browser = await launch();
   try {
     const page = await browser.newPage();
+    page.setDefaultTimeout(SLOW);
     await page.goto(server.origin);
     await page.getByRole("button", { name: "Try the demo model" }).click();
     await page.getByRole("tab", { name: "Study" }).click();

@@ -6,13 +6,12 @@ import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import * as meshmark from "meshmark";
-import { launch, serve } from "./browser.mjs";
+import { launch, serve, SLOW } from "./browser.mjs";
 import { OWNER, PASSPHRASE, repository, TAG } from "./support.mjs";
 
 const DESKTOP = { width: 1280, height: 800 };
 export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 export const NARROW = { viewport: { width: 320, height: 640 }, forcedColors: "active" };
-const SLOW = 120_000;
 
 const pictures = new URL("test-output/", repository);
 /** For files that are dropped and saved. */

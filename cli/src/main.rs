@@ -5,6 +5,7 @@
 
 mod attack;
 mod attacks;
+mod capacity;
 mod clock;
 mod embed;
 mod exit;
@@ -54,6 +55,7 @@ enum Command {
     Attack(attack::Attack),
     Attacks(attacks::Attacks),
     Inspect(inspect::Inspect),
+    Capacity(capacity::Capacity),
     Study(study::Study),
 }
 
@@ -69,6 +71,7 @@ impl Command {
             Command::Attack(command) => command.run(),
             Command::Attacks(command) => command.run(),
             Command::Inspect(command) => command.run(),
+            Command::Capacity(command) => command.run(),
             Command::Study(command) => command.run(),
         }
     }

@@ -31,45 +31,51 @@ pub(super) fn mark_unshown(
     for (number, mesh) in unshown {
         let mut is_marked = false;
         if number < MOST_MARKED
-            && let Some((scene, displacement)) = marked(model, mesh, mark, payload, options)?
+            && let Ok(scene) = Scene::of_mesh(document, mesh)
+            && !shares_with_any(&scene, others.iter().chain([shown]), document)?
+            && let Some(displacement) = marked(model, &scene, mark, payload, options)?
         {
-            let mut shares = false;
-            for other in others.iter().chain([shown]) {
-                shares |= scene.shares_with(other, document)?;
-            }
-            if !shares {
-                scene.scatter(document, &displacement)?;
-                others.push(scene);
-                is_marked = true;
-            }
+            scene.scatter(document, &displacement)?;
+            others.push(scene);
+            is_marked = true;
         }
         all.push(Unshown { mesh, is_marked });
     }
     Ok(all)
 }
 
-/// A mesh alone, and the displacement by which it holds the mark; none where it cannot hold it.
+/// Whether some positions of a scene are those of another.
+fn shares_with_any<'a>(
+    scene: &Scene,
+    others: impl Iterator<Item = &'a Scene>,
+    document: &Document,
+) -> Result<bool, Error> {
+    for other in others {
+        if scene.shares_with(other, document)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The displacement by which a mesh alone holds the mark; none where it cannot hold it.
 fn marked(
     model: &mut Model,
-    mesh: usize,
+    scene: &Scene,
     mark: &Mark,
     payload: Option<Payload>,
     options: &EmbedOptions,
-) -> Result<Option<(Scene, Vec<DVec3>)>, Error> {
+) -> Result<Option<Vec<DVec3>>, Error> {
     let mut document = Document::read(model.bytes, model.files)?;
-    let Ok(scene) = Scene::of_mesh(&document, mesh) else {
-        return Ok(None);
-    };
     let parts = scene.parts();
     let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
-    let displacement = match displacement(&scene, &leeway, mark, payload.is_some(), options, model)
-    {
+    let displacement = match displacement(scene, &leeway, mark, payload.is_some(), options, model) {
         Err(refusal) if refusal.is_of_the_model() => return Ok(None),
         displacement => displacement?,
     };
-    let moved = write(model, &mut document, &scene, &parts, &leeway, displacement)?;
+    let moved = write(model, &mut document, scene, &parts, &leeway, displacement)?;
     let mesh = scene.mesh.with_positions(moved.positions);
     drop(leeway);
     let is_read = is_seen_at_once(&mesh, mark.key, payload, model)?;
-    Ok(is_read.then_some((scene, moved.displacement)))
+    Ok(is_read.then_some(moved.displacement))
 }

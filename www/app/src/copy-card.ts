@@ -19,13 +19,14 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
   const { marked, report, owner, asked } = copy;
   const { readBack } = report;
   const holds = isMark(readBack);
+  const small = report.number === null ? [`The model is too small to hold the tag ${asked.tag}: its mark says whose it is, and no more.`] : [];
   const lost = holds ? losses(report.forecast) : null;
   const stronger = ofThisVisit && asked.strength !== "strong" ? [actions(button(`Mark again, ${asked.strength === "subtle" ? "balanced" : "strong"}`, ofThisVisit.onStronger))] : [];
   const earlier = ofThisVisit ? [] : [`Made ${new Date(copy.made).toLocaleString()}, and not downloaded since. This browser keeps it until you download or dismiss it.`];
   return card(
     readBack.verdict,
     holds ? "Your mark is in the copy" : "The mark does not hold in this model",
-    [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...earlier],
+    [holds ? `${marked.name} carries ${whose(copy)}: it was read back from the finished file.` : `${marked.name}: ${plain(readBack.reason ?? readBack.sentence)}`, ...small, ...earlier],
     ...(lost === null ? [] : [h("p", { class: "sentence warning" }, lost), ...stronger]),
     actions(...downloads(copy).map((name) => button(`Download ${name}`, () => onSave(name), "primary"))),
     forecastList(report.forecast),

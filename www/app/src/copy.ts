@@ -71,5 +71,6 @@ export async function reportOf({ made, host, hostBytes, marked, owner, asked, re
 
 /** Whose the copy is and what a check will read, for a person: "the tag ADA-1 of Ada". */
 export function whose({ owner, asked, report }: Copy): string {
-  return `${report.number === null ? "a mark without a tag" : `the tag ${asked.tag}`} ${owner === null ? "of a key file" : `of ${owner}`}`;
+  const of = owner === null ? "of a key file" : `of ${owner}`;
+  return report.number === null ? `the mark ${of}, without a tag` : `the tag ${asked.tag} ${of}`;
 }

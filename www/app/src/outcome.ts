@@ -115,12 +115,13 @@ export function oddsOf(lnP: number): HTMLElement {
 export function readingRows(reading: DetailedExtraction): Row[] {
   const isInPiece = reading.carriers.some(({ piece }) => piece !== null);
   const where = reading.foundIn ? `${reading.foundIn.name ?? "a piece without a name"}, ${count(reading.foundIn.parts)} of ${count(reading.foundIn.ofParts)} parts` : "a piece of the model";
+  const agreement: Row = ["Agreement", `${Math.round(reading.agreement * 100)} %`, "How well what was read fits that tag: 100 % is perfect, 0 % is chance."];
   const piece: Row = ["Found in", where, "Read alone, whatever stands beside it."];
   return [
     ["Tag", reading.tag === null ? "none read" : h("code", {}, reading.tag)],
     ...(isInPiece ? [piece] : []),
     ["Chance of this without the key", chance(reading.lnP)],
-    ["Agreement", `${Math.round(reading.agreement * 100)} %`, "How well what was read fits that tag: 100 % is perfect, 0 % is chance."],
+    ...(reading.verdict === "present" ? [] : [agreement]),
   ];
 }
 

@@ -18,6 +18,9 @@ pub struct Owner {
     /// File of 32 bytes that is the key, instead of owner and passphrase
     #[arg(long, value_name = "FILE", conflicts_with = "owner")]
     key_file: Option<PathBuf>,
+    /// Title of the work: gives it a key of its own, so that nobody can compare it with other works of the owner. Needed again to read the mark
+    #[arg(long, value_name = "TITLE")]
+    work: Option<String>,
 }
 
 impl Owner {
@@ -28,7 +31,11 @@ impl Owner {
                 Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?)
             }
         };
-        key.map_err(Failure::of)
+        let key = key.map_err(Failure::of)?;
+        match &self.work {
+            Some(title) => key.for_work(title).map_err(Failure::of),
+            None => Ok(key),
+        }
     }
 
     fn passphrase(&self) -> Result<String, Failure> {

@@ -3,6 +3,7 @@
 use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::file::load_text;
+use crate::owner::Owner;
 use crate::report::Report;
 use crate::suspect::Suspect;
 use clap::Args;
@@ -10,25 +11,37 @@ use meshmark::{Extraction, Key, Verdict, extract_many};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Test a model, or measured evidence, with a list of keys
+/// Test a model, or measured evidence, with a list of keys, or with an owner's key for each of a list of works
 #[derive(Args)]
 pub struct Test {
     #[command(flatten)]
     suspect: Suspect,
     /// File with a key in each line: 64 hexadecimal digits, and a name if you like
-    #[arg(long, value_name = "FILE")]
-    keys: PathBuf,
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "works",
+        conflicts_with = "works"
+    )]
+    keys: Option<PathBuf>,
+    /// File with the title of a work in each line; the key is that of the owner
+    #[arg(long, value_name = "FILE", requires = "Owner")]
+    works: Option<PathBuf>,
+    #[command(flatten)]
+    owner: Option<Owner>,
 }
 
 impl Test {
     /// That there are many keys is charged: a name is not found by asking often enough.
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
-        let (names, keys) = read_keys(&load_text(&self.keys)?)?;
+        let (names, keys) = self.keys()?;
         let (evidence, input) = self.suspect.measured(&mut clock)?;
         clock.start("test");
         let extractions = extract_many(&evidence, &keys);
-        let is_found = |extraction: &Extraction| extraction.verdict == Verdict::Found;
+        let is_found = |extraction: &Extraction| {
+            matches!(extraction.verdict, Verdict::Found | Verdict::Present)
+        };
         let row = |(name, extraction): (String, &Extraction)| match is_found(extraction) {
             true => json!({
                 "key": name,
@@ -52,6 +65,30 @@ impl Test {
         };
         Report::judged(&readings, verdict, clock)
     }
+
+    /// Keys, and what each is called.
+    fn keys(&self) -> Result<(Vec<String>, Vec<Key>), Failure> {
+        let (names, keys) = match (&self.keys, &self.works, &self.owner) {
+            (Some(file), ..) => read_keys(&load_text(file)?)?,
+            (None, Some(file), Some(owner)) => keys_of_works(&load_text(file)?, &owner.key()?)?,
+            _ => Default::default(),
+        };
+        match keys.is_empty() {
+            true => Err(Failure::Words("there is no key in the list".to_owned())),
+            false => Ok((names, keys)),
+        }
+    }
+}
+
+/// The keys of an owner's works, from lines with their titles. Lines that are empty say nothing.
+fn keys_of_works(text: &str, owner: &Key) -> Result<(Vec<String>, Vec<Key>), Failure> {
+    let titles = text
+        .lines()
+        .map(str::trim)
+        .filter(|title| !title.is_empty());
+    let titles: Vec<String> = titles.map(str::to_owned).collect();
+    let keys: Result<Vec<Key>, _> = titles.iter().map(|title| owner.for_work(title)).collect();
+    Ok((titles, keys.map_err(Failure::of)?))
 }
 
 /// Keys from lines of 64 hexadecimal digits, each with a name after them if it has one. Lines that are empty or begin with `#`
@@ -84,9 +121,6 @@ fn read_keys(text: &str) -> Result<(Vec<String>, Vec<Key>), Failure> {
         };
         names.push(name);
         keys.push(key);
-    }
-    if keys.is_empty() {
-        return Err(Failure::Words("there is no key in the list".to_owned()));
     }
     Ok((names, keys))
 }

@@ -246,6 +246,39 @@ fn cli_tests_a_list_of_keys() {
     assert_eq!(code, 2, "a list without keys says nothing");
 }
 
+/// A work has a key of its own, and a list of titles is a list of keys.
+#[test]
+fn cli_keeps_works_apart() {
+    let here = Folder::new("works");
+    fs::write(here.path("key"), [0xab; 32]).unwrap();
+    let key = "--key-file key";
+    here.run(&format!(
+        "embed model.glb marked.glb {key} --work Rock --tag ADA-1"
+    ));
+    let (code, report, _) = here.run(&format!("extract marked.glb {key} --work Rock"));
+    assert_eq!((code, &report["tag"]), (0, &"ADA-1".into()));
+    for other in ["", "--work rock"] {
+        let (code, ..) = here.run(&format!("extract marked.glb {key} {other}"));
+        assert_eq!(code, 1, "another key: {other}");
+    }
+    here.run("measure marked.glb marked.mmev");
+    fs::write(here.path("works.txt"), "Moon\n\n Rock \n").unwrap();
+    let works = "test marked.mmev --evidence --works works.txt";
+    let (code, report, _) = here.run(&format!("{works} {key}"));
+    assert_eq!((code, &report["lnCharge"]), (0, &libm::log(2.0).into()));
+    let found: Vec<&Value> = report["keys"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| &row["found"])
+        .collect();
+    assert_eq!(found, [&Value::from(false), &Value::from(true)]);
+    let (code, ..) = here.run(works);
+    assert_eq!(code, 2, "whose works they are has to be said");
+    let (code, report, _) = here.run(&format!("embed model.glb x.glb {key} --tag A --work"));
+    assert_eq!(code, 2, "{report}");
+}
+
 #[test]
 fn cli_reads_and_writes_external_buffers() {
     let here = Folder::new("external");

@@ -2,6 +2,7 @@
 //!
 //! Everything random comes from one seed, which the system draws and the table states; `--seed` runs a table again.
 
+mod adversary;
 mod baseline;
 mod case;
 mod cell;
@@ -74,6 +75,9 @@ struct Arguments {
     /// Instead of the grid: plain models whose surface is written otherwise, or has more beside it that is not seen; prints a table.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild"])]
     surface: bool,
+    /// Instead of the grid: what people who have no key learn from marked plain models, and do to them; prints tables.
+    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    adversary: bool,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -134,6 +138,10 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.surface {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return surface::table(models, &Seed::new(seed));
+    }
+    if arguments.adversary {
+        let (models, _) = models::all(arguments.models.as_deref())?;
+        return adversary::table(models, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -154,6 +154,12 @@ impl Carrier {
         }
     }
 
+    /// Whether somebody who has a marked copy, and no key, can carry its mark over to a model of another shape: how each vertex sits
+    /// among its neighbours can be given to vertices that have such neighbours elsewhere.
+    pub(crate) fn can_be_carried_over(self) -> bool {
+        self == Carrier::Ring
+    }
+
     /// The tag of its section in stored evidence.
     pub(crate) fn section(self) -> &'static [u8; 4] {
         match self {

@@ -47,6 +47,11 @@ impl Pose {
             let moment = [sum, p, q, r].into_iter().map(outer).sum::<DMat3>();
             covariance += moment * (area / (12.0 * total));
         }
+        Pose::of_moments(centre, covariance)
+    }
+
+    /// The frame of a shape with a centre and a covariance; `None` where that has no positive trace.
+    pub fn of_moments(centre: DVec3, covariance: DMat3) -> Option<Pose> {
         let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
         if !(trace > 0.0 && trace.is_finite()) {
             return None;
@@ -96,17 +101,7 @@ impl Pose {
         let [xx, xy, xz, yy, yz, zz] = second.map(|entry| entry / (20.0 * volume));
         let rows = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
         let covariance = DMat3::from_cols_array(&rows) - outer(centre);
-        let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
-        if !(trace > 0.0 && trace.is_finite()) {
-            return None;
-        }
-        let (spreads, axes) = eigen(covariance * (1.0 / trace));
-        (spreads.z > 0.002).then(|| Pose {
-            centre: origin + centre,
-            size: trace.sqrt(),
-            axes,
-            spreads,
-        })
+        Pose::of_moments(origin + centre, covariance).filter(|pose| pose.spreads.z > 0.002)
     }
 
     /// The pose of a mesh whose triangles face outwards, and of its boundary: by volume moments, or by area moments where it

@@ -1,4 +1,5 @@
-//! From a passphrase to everything secret: Argon2id -> master key -> HKDF sub-keys by label -> keyed PRF of addresses.
+//! From a passphrase to everything secret: Argon2id -> master key -> HKDF -> the key of a work -> HKDF sub-keys by label -> keyed PRF of
+//! addresses.
 //!
 //! docs/FORMAT.md fixes every parameter here: a change would orphan all marks made before it.
 
@@ -27,6 +28,9 @@ pub enum KeyError {
     /// The passphrase is empty.
     #[error("the passphrase is empty")]
     EmptyPassphrase,
+    /// The title of a work has no character that is not white space.
+    #[error("the title of the work is empty")]
+    EmptyWork,
     /// A key file of another size.
     #[error("a key file has exactly 32 bytes, this one has {0}")]
     Length(usize),
@@ -41,6 +45,7 @@ impl KeyError {
         match self {
             KeyError::EmptyOwner => "key.empty-owner",
             KeyError::EmptyPassphrase => "key.empty-passphrase",
+            KeyError::EmptyWork => "key.empty-work",
             KeyError::Length(_) => "key.length",
             KeyError::Derivation(_) => "key.derivation",
         }
@@ -110,6 +115,35 @@ impl Key {
         Argon2::new(Algorithm::Argon2id, Version::V0x13, params)
             .hash_password_into(passphrase.as_bytes(), &salt, &mut key.0)
             .map_err(derivation)?;
+        Ok(key)
+    }
+
+    /// The key of one work of this owner: HKDF-SHA256 (RFC 5869) of this key, with the work's title.
+    ///
+    /// Marks of one key have their dithers in common, and whoever has several models with it can compare them, or carry one's RING mark
+    /// over to another. Works with keys of their own have nothing in common. A title is no secret. It is brought to Unicode NFKC,
+    /// and white space around it is dropped.
+    ///
+    /// # Errors
+    /// [`KeyError::EmptyWork`].
+    #[cfg(feature = "nfkc")]
+    pub fn for_work(&self, title: &str) -> Result<Key, KeyError> {
+        use unicode_normalization::UnicodeNormalization;
+        self.for_normalized_work(&title.nfkc().collect::<String>())
+    }
+
+    /// The same for a title that is in Unicode NFKC already.
+    ///
+    /// # Errors
+    /// As [`for_work`](Self::for_work).
+    pub fn for_normalized_work(&self, title: &str) -> Result<Key, KeyError> {
+        if title.trim().is_empty() {
+            return Err(KeyError::EmptyWork);
+        }
+        let mut key = Key([0; Key::BYTES]);
+        Hkdf::<Sha256>::new(Some(DOMAIN), &self.0)
+            .expand_multi_info(&[b"work/", title.trim().as_bytes()], &mut key.0)
+            .expect("32 bytes are fewer than HKDF's limit of 255 hashes");
         Ok(key)
     }
 

@@ -37,4 +37,15 @@ impl Admissible {
             displacement[vertex as usize] = DVec3::ZERO;
         }
     }
+
+    /// A number for each of V vertices, equal for those that move together.
+    pub fn instances(&self, num_vertices: usize) -> Vec<u32> {
+        let mut numbers: Vec<u32> = (0..num_vertices as u32).collect();
+        for orbit in &self.orbits {
+            for &(vertex, _) in &orbit.members {
+                numbers[vertex as usize] = orbit.members[0].0;
+            }
+        }
+        numbers
+    }
 }

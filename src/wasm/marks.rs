@@ -21,6 +21,17 @@ pub fn derive_key(owner: JsString, passphrase: JsString) -> Result<Vec<u8>, JsVa
     Ok(key.to_bytes().to_vec())
 }
 
+/// The key of one work of an owner, 32 bytes.
+#[wasm_bindgen(js_name = workKey, skip_typescript)]
+pub fn work_key(key: &[u8], title: JsString) -> Result<Vec<u8>, JsValue> {
+    let title = String::from(title.normalize("NFKC"));
+    let work = key_from(key)?
+        .for_normalized_work(&title)
+        .map_err(Error::from)
+        .map_err(thrown)?;
+    Ok(work.to_bytes().to_vec())
+}
+
 /// Marks a model.
 #[wasm_bindgen(skip_typescript)]
 pub fn embed(

@@ -116,6 +116,8 @@ export interface Extraction extends Partial<Details> {
   sentence: string;
   /** Why it is not `found`; `null` where it is. */
   reason: string | null;
+  /** What a mark that is there does not prove, where it proves less than others: one that is in RING alone can be another model's. */
+  caution: string | null;
   /**
    * Which piece of the suspect it was found in, alone: what its node is called, and how many of the model's connected parts it has. `null`
    * where it was the whole, where nothing was found, and where evidence was read.
@@ -245,7 +247,13 @@ export interface MeshmarkErrorObject {
 /** 32 bytes from an owner's name and passphrase: Argon2id, see docs/FORMAT.md. Takes tenths of a second by design. */
 export function deriveKey(owner: string, passphrase: string): Uint8Array;
 
-/** Marks a model. `key` is 32 bytes: from `deriveKey`, or a key file's. */
+/**
+ * The key of one work of an owner, 32 bytes, from the owner's key and the work's title. Works with keys of their own have nothing in common that
+ * somebody who has several of them could compare. A title is no secret, but is needed to find the mark again.
+ */
+export function workKey(key: Uint8Array, title: string): Uint8Array;
+
+/** Marks a model. `key` is 32 bytes: from `deriveKey` or `workKey`, or a key file's. */
 export function embed(model: Uint8Array, payload: Payload, key: Uint8Array, options?: EmbedOptions): Embedding;
 
 /** Measures a suspect without any key. The result, versioned bytes, can be kept and tested against many keys. */

@@ -266,6 +266,10 @@ fn against(symbols: &[SoftSymbol], sign: impl Fn(Symbol) -> f64) -> Statistic {
     )
 }
 
+/// What is said of a mark that is in no carrier but one that can be carried over.
+const CARRIED_OVER: &str = "Only the way in which vertices are connected says so. Whoever has a marked copy can carry that over to another \
+     model without the key: compare the shape with your original.";
+
 /// One verdict from all carriers' readings; the choice between carriers is charged. Below `found` the words hold nothing that
 /// follows the key but the verdict.
 fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
@@ -311,11 +315,17 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
         reason.push_str(&tag.unwrap_or_else(|| other.payload.number().to_string()));
         reason.push('.');
     }
+    let is_there = matches!(verdict, Verdict::Found | Verdict::Present);
+    let is_in_shape = heard.iter().any(|heard| {
+        let reading = &heard.report;
+        !reading.name.can_be_carried_over() && union(reading.ln_p, LN_CARRIERS) <= LN_P_FOUND
+    });
     Extraction {
         verdict,
         input,
         sentence: verdict.sentence(),
         reason,
+        caution: (is_there && !is_in_shape).then_some(CARRIED_OVER),
         found_in: None,
         tag,
         number,
@@ -324,7 +334,7 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
             agreement,
             carriers: heard.into_iter().map(|heard| heard.report).collect(),
         },
-        shows_details: matches!(verdict, Verdict::Found | Verdict::Present),
+        shows_details: is_there,
     }
 }
 

@@ -88,6 +88,8 @@ pub struct Extraction {
     pub sentence: &'static str,
     /// Why it is not `found`: words without a number that follows the key.
     pub reason: Option<String>,
+    /// What a mark that is there does not prove, where it proves less than others.
+    pub caution: Option<&'static str>,
     /// Which piece of the suspect it was found in, alone, where that was not the whole and the suspect is at hand.
     pub found_in: Option<FoundIn>,
     /// The payload as a tag, where it is found.
@@ -143,11 +145,12 @@ impl Extraction {
 impl Serialize for Extraction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let num_details = if self.shows_details { 3 } else { 0 };
-        let mut fields = serializer.serialize_struct("Extraction", 7 + num_details)?;
+        let mut fields = serializer.serialize_struct("Extraction", 8 + num_details)?;
         fields.serialize_field("verdict", &self.verdict)?;
         fields.serialize_field("input", &self.input)?;
         fields.serialize_field("sentence", &self.sentence)?;
         fields.serialize_field("reason", &self.reason)?;
+        fields.serialize_field("caution", &self.caution)?;
         fields.serialize_field("foundIn", &self.found_in)?;
         fields.serialize_field("tag", &self.tag)?;
         fields.serialize_field("number", &self.number)?;

@@ -397,7 +397,7 @@ fn charges_are_those_that_are_declared() {
             let is_declared = declared
                 .iter()
                 .any(|of_kind| (charge - of_kind).abs() < 1e-9);
-            let is_split = (charge - of_kind(3.0)).abs() < 1e-9;
+            let is_split = (charge - of_kind(4.0)).abs() < 1e-9;
             assert!(is_declared || is_split, "{}", libm::exp(charge));
             let pilots = hypothesis.symbols.iter();
             let has_pilots = pilots.clone().any(|soft| soft.symbol == Symbol::Pilot);

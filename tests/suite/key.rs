@@ -32,6 +32,22 @@ fn key_derivation_never_changes() {
     );
 }
 
+/// The same of a work's key.
+#[wasm_bindgen_test(unsupported = test)]
+fn key_of_a_work_never_changes() {
+    let key = Key::from_bytes(&[7; Key::BYTES]).unwrap();
+    let work = |title| hex(&*key.for_work(title).unwrap().to_bytes());
+    assert_eq!(
+        work("Rock"),
+        "f1d19ad4a13a2489f4518e1e0087e2d9076a7449e05b535c2af5c25bcf55d104"
+    );
+    assert_eq!(work(" Rock\u{a0}"), work("Rock"));
+    assert_eq!(work("Zoe\u{308}"), work("Zo\u{eb}"));
+    assert_ne!(work("rock"), work("Rock"));
+    let error = key.for_work(" ").unwrap_err();
+    assert_eq!(error.code(), "key.empty-work");
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn key_sub_keys_differ_by_label_and_by_key() {
     let [a, b] = [[1; 32], [2; 32]].map(|bytes| Key::from_bytes(&bytes).unwrap());

@@ -85,7 +85,7 @@ fn reports_below_found_do_not_follow_the_key() {
         let mut names: Vec<&String> = report.as_object().unwrap().keys().collect();
         names.sort();
         let expected = [
-            "foundIn", "input", "number", "reason", "sentence", "tag", "verdict",
+            "caution", "foundIn", "input", "number", "reason", "sentence", "tag", "verdict",
         ];
         assert_eq!(names, expected);
     }

@@ -3,7 +3,7 @@
 use crate::support::fixtures::{asteroid, key, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{crop, reorder, similarity};
-use meshmark::internals::carrier::ring::Measurement;
+use meshmark::internals::carrier::ring::{Measurement, trace};
 use meshmark::internals::carrier::{Carrier, Host, Hypothesis, Mark, StoredError};
 use meshmark::internals::code::{Codeword, Symbol};
 use meshmark::internals::detection::Statistic;
@@ -263,4 +263,19 @@ fn ring_fixed_vertices_stay() {
     );
     assert!(displacement[..400].iter().all(|d| *d == DVec3::ZERO));
     assert!(best(&displaced(&asteroid, &displacement), 1) < -100.0);
+}
+
+/// Rings that share an address would agree with each other, for everybody to see.
+#[wasm_bindgen_test(unsupported = test)]
+fn ring_leaves_no_trace() {
+    let hosts = [
+        ("asteroid", asteroid()),
+        ("torus knot", shapes::torus_knot(120, 20)),
+        ("terrain", shapes::terrain(60)),
+    ];
+    for (name, host) in hosts {
+        let result = displaced(&host, &marked(&host, &Admissible::default()));
+        let (before, after) = (trace(&host), trace(&result));
+        assert!(after - before < 5.0, "{name}: {before:.1} to {after:.1}");
+    }
 }

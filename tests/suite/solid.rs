@@ -3,7 +3,7 @@
 use crate::support::fixtures::{key, strong};
 use glam::DVec3;
 use meshmark::internals::attack::{
-    crop, noise, quantize, reorder, similarity, smooth, smooth_inside,
+    crop, noise, quantize, reorder, similarity, simplify, smooth, smooth_inside,
 };
 use meshmark::internals::carrier::solid::{Measurement, Surface, Surfaces};
 use meshmark::internals::carrier::{Carrier, Host, Mark, StoredError};
@@ -68,6 +68,22 @@ fn exponent(mesh: &Mesh, reader: u8) -> f64 {
             .ln_p()
     });
     fits.fold(0.0, f64::max)
+}
+
+/// A scale along one axis of the scene, and fewer triangles: nobody sees either.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_stretches_are_undone() {
+    let result = marked(&rock(), 1);
+    for scale in [
+        DVec3::new(1.0, 1.02, 1.0),
+        DVec3::new(1.0, 1.0, 0.95),
+        DVec3::new(1.1, 1.0, 1.0),
+    ] {
+        let stretched = result.positions.iter().map(|p| *p * scale).collect();
+        let suspect = simplify(&result.with_positions(stretched), 0.5);
+        let reached = exponent(&suspect, 1);
+        assert!(reached > 60.0, "{scale}: {reached:.0}");
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -246,15 +262,17 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
     assert!(error.to_string().contains("3 vertices give 9"), "{error}");
 }
 
-/// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, units of areas and of
-/// moments in 4 each, the number of clusters in 4; then the first cluster's cell in 9, its centre in 3, area vector in 6, moment in 2, area in 1.
+/// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, spreads and the scene's axes in 7
+/// times 4, units of areas and of moments in 4 each, the number of clusters in 4; then the first cluster's cell in 9, its centre in 3, area vector in 6, moment in 2, area in 1.
 #[wasm_bindgen_test(unsupported = test)]
 fn solid_refuses_forged_measurements() {
     const PITCHES: usize = 4;
-    const AREA_UNIT: usize = 5;
-    const MOMENT_UNIT: usize = 9;
-    const COUNT: usize = 13;
-    const FIRST: usize = 17;
+    const SPREADS: usize = 5;
+    const SCENE: usize = 17;
+    const AREA_UNIT: usize = 33;
+    const MOMENT_UNIT: usize = 37;
+    const COUNT: usize = 41;
+    const FIRST: usize = 45;
     let bytes = Measurement::new(&rock()).to_bytes();
     let with = |at: usize, forged: &[u8]| {
         let mut bytes = bytes.clone();
@@ -281,7 +299,7 @@ fn solid_refuses_forged_measurements() {
         "more pieces than are looked for"
     );
     assert_eq!(
-        impossible(&with(0, &[2])),
+        impossible(&[&[2], &bytes[1..SPREADS], &bytes[AREA_UNIT..]].concat()),
         "surfaces without the suspect's own"
     );
     for pitches in [0b111, 0b100_0001] {
@@ -294,6 +312,18 @@ fn solid_refuses_forged_measurements() {
         Measurement::from_bytes(&with(PITCHES, &[0])),
         Err(StoredError::Damaged)
     );
+    for number in [1.5f32, f32::NAN, -0.1] {
+        assert_eq!(
+            impossible(&with(SPREADS, &number.to_le_bytes())),
+            "a frame with no such spreads"
+        );
+    }
+    for number in [2.0f32, f32::NAN, f32::INFINITY] {
+        assert_eq!(
+            impossible(&with(SCENE, &number.to_le_bytes())),
+            "a frame that is not turned but distorted"
+        );
+    }
     for unit in [1e5f32, f32::INFINITY, f32::NAN, -1.0] {
         assert_eq!(
             impossible(&with(AREA_UNIT, &unit.to_le_bytes())),

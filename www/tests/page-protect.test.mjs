@@ -68,7 +68,7 @@ for (const [name, source] of [
     await result().getByText("Keep these figures to yourself.").waitFor();
     assert.ok(await result().getByText("Agreement").isVisible());
     const passedOn = (await savedReport()).result;
-    assert.deepEqual(Object.keys(passedOn).sort(), ["foundIn", "input", "number", "reason", "sentence", "tag", "verdict"]);
+    assert.deepEqual(Object.keys(passedOn).sort(), ["caution", "foundIn", "input", "number", "reason", "sentence", "tag", "verdict"]);
     await picture(`none-${name}`);
 
     await page.getByLabel(/Tag to look for/).fill(TAG);

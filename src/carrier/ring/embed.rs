@@ -66,8 +66,14 @@ fn displacement(
     let features = Features::new(positions, &neighbourhoods);
     let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
     let by_geometry = address::by_geometry(positions, &neighbourhoods, &features);
-    let (kind, available) =
-        address::choose(host.mesh, &by_connectivity, &by_geometry, &features.usable);
+    let instances = host.admissible.instances(positions.len());
+    let (kind, available) = address::choose(
+        host.mesh,
+        &by_connectivity,
+        &by_geometry,
+        &features.usable,
+        &instances,
+    );
     // Addresses by position survive nothing that SOLID does not.
     let adds_nothing = host.on_top && matches!(kind, AddressKind::Position(_));
     let needed = NEEDS.presence as usize * SHARE as usize;
@@ -106,15 +112,11 @@ fn displacement(
             .zip(&normals)
             .map(|(d, n)| d.dot(*n))
             .collect();
-        let goals = now.usable.iter().filter_map(|&vertex| {
-            let owned = ownership.get(*addresses.get(vertex as usize)?)?;
-            Some(linear.goal(
-                vertex as usize,
-                now.offsets[vertex as usize],
-                &owned,
-                mark,
-                &along,
-            ))
+        let carriers = address::carriers(addresses, &now.usable, &instances);
+        let goals = carriers.into_iter().filter_map(|vertex| {
+            let vertex = vertex as usize;
+            let owned = ownership.get(addresses[vertex])?;
+            Some(linear.goal(vertex, now.offsets[vertex], &owned, mark, &along))
         });
         let solution = linear.solve(&goals.collect::<Vec<_>>());
         displacement = solution

@@ -5,6 +5,9 @@
 //! pose to find and no order to keep: what is left of a model after cropping still says where each symbol belongs. The key
 //! owns a quarter of the addresses; two owners who mark one model collide on a sixteenth of them, and neither loses theirs.
 //!
+//! Only rings whose address no other ring has carry symbols: rings that share one share its dither, and would agree with each other
+//! for everybody to see.
+//!
 //! Regular and small meshes, whose neighbourhoods look alike, are addressed by the place of a vertex in the model's own frame
 //! instead: that survives re-export and quantization, but no crop.
 //!
@@ -18,15 +21,17 @@ mod address;
 mod embed;
 mod feature;
 mod measurement;
+mod trace;
 
 pub use embed::embed;
 pub use measurement::Measurement;
+pub use trace::{Ring, rings, trace};
 
 use crate::code::Symbol;
 use crate::key::{Key, Prf, unit};
 
 /// Step of the quantizer, in units of the feature: a displacement of about 1.3 % of an edge.
-const STEP: f64 = 0.04;
+pub const STEP: f64 = 0.04;
 
 /// One address in so many is a key's own. With all of them, whoever marks a marked model with a key of their own erases
 /// the first mark: ln p of the bunny's goes from -8751 to -4; with a quarter, from -2926 to -1469.

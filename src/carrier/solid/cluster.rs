@@ -86,6 +86,26 @@ pub fn clusters(mesh: &Mesh, pose: &Pose, pitch: f64) -> Vec<Cluster> {
     nearest(heaviest(clusters), pitch)
 }
 
+/// Clusters of clusters: those in one cell of a grid become one. In increasing order of their cells.
+pub fn merged(clusters: &[Cluster], cell: f64) -> Vec<Cluster> {
+    let order = order_by(clusters.iter().map(|c| number((c.centre / cell).floor())));
+    let cells = order.chunk_by(|a, b| a.0 == b.0);
+    let merge = |cell: &[(u64, u32)]| {
+        let members = || cell.iter().map(|&(_, index)| &clusters[index as usize]);
+        let weight: f64 = members().map(|member| member.weight).sum();
+        let weighted: DVec3 = members().map(|member| member.centre * member.weight).sum();
+        let centre = weighted / weight;
+        let moment = |member: &Cluster| member.moment + (member.centre - centre).dot(member.area);
+        Cluster {
+            centre,
+            area: members().map(|member| member.area).sum(),
+            moment: members().map(moment).sum(),
+            weight,
+        }
+    };
+    cells.map(merge).collect()
+}
+
 /// The heaviest clusters, in their order, if there are too many.
 fn heaviest(clusters: Vec<Cluster>) -> Vec<Cluster> {
     if clusters.len() <= MOST_CLUSTERS {

@@ -21,6 +21,7 @@
 //! | `strength` | smoothings that may have happened, and what lies between those that are undone |
 //! | `surface`, `surfaces` | detecting: what a suspect is, and may have been |
 //! | `search` | detecting: the ways of reading that the pilots choose |
+//! | `stretch` | detecting: a scale along one axis |
 //! | `field`, `scan` | detecting: turns, where the frame does not determine its axes |
 //! | `refine` | detecting: where exactly the lattice lies |
 //! | `reading` | detecting: what the chosen ways say, and what they are charged |
@@ -48,6 +49,7 @@ mod scan;
 mod search;
 mod store;
 mod strength;
+mod stretch;
 mod surface;
 mod surfaces;
 mod window;

@@ -14,6 +14,10 @@ pub const AREAS_TO_EMBED: Range<f64> = 800.0..1810.0;
 /// The same for a detector: attacks change a surface's area, and it has to try what an embedder chose.
 pub const AREAS: Range<f64> = 680.0..2150.0;
 
+/// The same where a stretch is undone, which gives back the area that the embedder saw, but for what simplification takes: a narrower
+/// range, for every pitch takes as long as all others.
+pub const AREAS_IF_STRETCHED: Range<f64> = 780.0..1860.0;
+
 /// The largest area of a surface in squares of the finest pitch that it is read at: a suspect's, times what undoing a smoothing may
 /// add. What is larger is left out.
 pub const LARGEST_AREA: f64 = AREAS.end * SPIKY_IF_FEW;

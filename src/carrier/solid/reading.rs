@@ -11,6 +11,7 @@ use super::quantizer::{STEPS, cosine, phase};
 use super::refine::{View, refine};
 use super::search::{Candidate, STRENGTHS, Search, num_nodes};
 use super::strength::{blend, weights};
+use super::stretch::mapped;
 use super::surface::Surface;
 use super::window::{Window, windows};
 use crate::carrier::{Hypothesis, Reading};
@@ -24,8 +25,8 @@ const KINDS: usize = 3;
 /// The surfaces of one piece, in their order.
 pub type SurfacesOf<'a> = Box<dyn Iterator<Item = Cow<'a, Surface>> + 'a>;
 
-/// Pieces that are scanned, the whole being the first: a scan takes as long for a small one as for a large one.
-const SCANNED: usize = 2;
+/// Pieces that are searched widely, the whole being the first: stretches and scans take as long for a small one as for a large one.
+const WIDE: usize = 2;
 
 /// Reads the surfaces of a suspect with a key, and those of each of its pieces alone, until it is sure of one.
 ///
@@ -60,7 +61,7 @@ pub fn read<'a>(
     for (number, mut search, mut surfaces) in begun {
         let mut report =
             |stage, part| progress.report(stage, (number as f64 + part) / num_pieces as f64);
-        search.go_on(&mut surfaces, number < SCANNED, &mut report)?;
+        search.go_on(&mut surfaces, number < WIDE, &mut report)?;
         let reading = search.conclude().of_piece(number, num_pieces);
         if search.is_sure() {
             return Ok(reading);
@@ -101,7 +102,11 @@ impl Search<'_> {
             .into_iter()
             .map(|(part, weight)| {
                 let node = &self.nodes[candidate.nodes[part]];
-                (windows(&node.clusters, &view.placement), weight)
+                let clusters = match &view.stretch {
+                    Some(stretch) => Cow::Owned(mapped(&node.clusters, stretch)),
+                    None => Cow::Borrowed(&node.clusters),
+                };
+                (windows(&clusters, &view.placement), weight)
             })
             .collect();
         blend(
@@ -161,6 +166,7 @@ impl Search<'_> {
         let to_refine = [
             (self.own.first(), 4.5),
             (self.undone.first(), 9.0),
+            (self.stretched.first(), 9.0),
             (self.scanned.as_ref(), 9.0),
         ];
         for (candidate, least) in to_refine {

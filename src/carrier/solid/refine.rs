@@ -7,10 +7,14 @@ use super::window::Window;
 use crate::code::Symbol;
 use crate::order::order_by;
 use crate::random::Random;
+use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// Degrees of freedom: translation, rotation, logarithms of the scale and of the strength.
-const FREEDOMS: usize = 8;
+/// Degrees of freedom: translation, rotation, logarithms of the scale and of the strength; of a view that undoes a stretch, also the five
+/// of a stretch that keeps the volume.
+const FREEDOMS: usize = 13;
+const WITHOUT_STRETCH: usize = 8;
+const STRENGTH: usize = 7;
 type Nudge = [f64; FREEDOMS];
 
 /// A difference quotient's step.
@@ -29,20 +33,52 @@ const DAMPING: f64 = 1e-3;
 /// A strength may be off by tens of percent where a scale is off by some.
 const STRENGTHS_PER_SCALE: f64 = 12.0;
 
-/// Where a lattice is looked for, and on the surface of what strength of smoothing.
+/// Where a lattice is looked for, and on what surface.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
+    /// What is done to the surface first, to undo a stretch.
+    pub stretch: Option<DMat3>,
     pub placement: Placement,
-    /// 0 for the suspect itself.
+    /// Of the smoothing that is undone; 0 for the suspect itself.
     pub strength: f64,
 }
 
 impl View {
-    fn nudged(&self, nudge: &Nudge) -> View {
-        let [similarity @ .., strength] = nudge;
+    /// Of a suspect that nothing has smoothed.
+    pub fn of_suspect(placement: Placement, stretch: Option<DMat3>) -> View {
         View {
-            placement: self.placement.nudged(similarity),
+            stretch,
+            placement,
+            strength: 0.0,
+        }
+    }
+
+    fn nudged(&self, nudge: &Nudge) -> View {
+        let [a, b, c, d, e, f, scale, strength, x, y, xy, yz, zx] = *nudge;
+        let more = DMat3::from_cols(
+            DVec3::new(1.0 + x, xy, zx),
+            DVec3::new(xy, 1.0 + y, yz),
+            DVec3::new(zx, yz, 1.0 - x - y),
+        );
+        View {
+            stretch: self.stretch.map(|stretch| more * stretch),
+            placement: self.placement.nudged(&[a, b, c, d, e, f, scale]),
             strength: self.strength * libm::exp(STRENGTHS_PER_SCALE * strength),
+        }
+    }
+
+    /// Which nudges change what is seen.
+    fn moves(&self, freedom: usize) -> bool {
+        match freedom {
+            STRENGTH => self.strength > 0.0,
+            _ => freedom < self.num_freedoms(),
+        }
+    }
+
+    fn num_freedoms(&self) -> usize {
+        match self.stretch {
+            Some(_) => FREEDOMS,
+            None => WITHOUT_STRETCH,
         }
     }
 }
@@ -91,7 +127,9 @@ fn climb(
             } else {
                 spread * spreads[number % 3]
             };
-            let nudge = std::array::from_fn(|_| size * random.normal());
+            let mut nudge = [0.0; FREEDOMS];
+            let drawn = &mut nudge[..start.num_freedoms()];
+            drawn.fill_with(|| size * random.normal());
             (model.agreement(&nudge), nudge)
         })
         .collect();
@@ -149,12 +187,7 @@ impl Model {
             some.phases[number % LANES] = phase(window.flux / step, *dither);
             some.weights[number % LANES] = window.weight;
         }
-        let num_moving = if start.strength > 0.0 {
-            FREEDOMS
-        } else {
-            FREEDOMS - 1
-        };
-        for axis in 0..num_moving {
+        for axis in (0..FREEDOMS).filter(|&axis| start.moves(axis)) {
             let mut nudge = [0.0; FREEDOMS];
             nudge[axis] = EPSILON;
             let nudged = see(&start.nudged(&nudge));

@@ -1,13 +1,15 @@
 //! Which surface, pitch, turn of the frame, step and strength of smoothing suit a key: pilots choose, among ways of reading that
 //! were declared before any key was known.
 
-use super::cluster::Cluster;
+use super::cluster::{Cluster, merged};
 use super::frame::{Axes, turns};
 use super::lattice::Lattice;
+use super::pitch::AREAS_IF_STRETCHED;
 use super::quantizer::{STEPS, cosine, phase};
 use super::refine::View;
 use super::scan::scan;
 use super::strength::{FAMILIES, blend, weights};
+use super::stretch::{CELLS_PER_PITCH, half, mapped};
 use super::surface::{Origin, Surface};
 use super::window::{Window, windows};
 use crate::code::Symbol;
@@ -22,8 +24,9 @@ const ENOUGH: f64 = 40.0;
 /// Strengths that are tried between two nodes, the further node included.
 pub const STRENGTHS: usize = 8;
 
-/// The share of the time that a search takes which ends in a scan, before that.
-const SHARE_BEFORE_SCAN: f64 = 0.2;
+/// The share of the time that a search takes before it tries stretches, and the share of one which ends in a scan, before that.
+const SHARE_BEFORE_STRETCHES: f64 = 0.5;
+const SHARE_BEFORE_SCAN: f64 = 0.3;
 
 /// Ways of reading that are followed, of each kind.
 pub const FOLLOWED: usize = 2;
@@ -63,6 +66,32 @@ pub struct Candidate {
     pub step: f64,
 }
 
+impl Candidate {
+    /// Of the suspect's own surface.
+    fn of_suspect(evidence: f64, view: View, step: f64) -> Candidate {
+        Candidate {
+            evidence,
+            nodes: vec![0],
+            strengths: vec![0.0],
+            view,
+            step,
+        }
+    }
+}
+
+fn area(clusters: &[Cluster]) -> f64 {
+    clusters.iter().map(|cluster| cluster.weight).sum()
+}
+
+/// Adds a candidate to the best so many, best first; of equals, those that were met first.
+fn keep(best: &mut Vec<Candidate>, most: usize, candidate: Candidate) {
+    let place = best.partition_point(|other| other.evidence >= candidate.evidence);
+    if place < most {
+        best.insert(place, candidate);
+        best.truncate(most);
+    }
+}
+
 pub struct Search<'a> {
     pub lattice: Lattice,
     pub turns: Vec<DMat3>,
@@ -72,29 +101,42 @@ pub struct Search<'a> {
     pub own: Vec<Candidate>,
     /// The best ways of undoing something.
     pub undone: Vec<Candidate>,
+    /// The best of all stretches.
+    pub stretched: Vec<Candidate>,
     /// The best of a scan.
     pub scanned: Option<Candidate>,
 }
 
 impl<'a> Search<'a> {
-    /// Looks at the rest of a suspect's surfaces in their order, until it is sure; then, where axes are undetermined, scans if it may.
+    /// Looks at the rest of a suspect's surfaces in their order, until it is sure; then, if it may search widely, tries stretches and, where
+    /// axes are undetermined, scans.
     pub fn go_on(
         &mut self,
         surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
-        may_scan: bool,
+        is_wide: bool,
         progress: &mut dyn Progress,
     ) -> Result<(), Cancelled> {
         let axes = self.nodes[0].surface.axes;
-        let scans = may_scan && axes.contains(&Axes::Undetermined);
+        let scans = is_wide && axes.contains(&Axes::Undetermined);
         let share = if scans { SHARE_BEFORE_SCAN } else { 1.0 };
         let mut looked = 0.0;
         while !self.is_sure() {
-            step(progress, Stage::Test, share * looked)?;
+            step(
+                progress,
+                Stage::Test,
+                share * SHARE_BEFORE_STRETCHES * looked,
+            )?;
             let Some(surface) = surfaces.next() else {
                 break;
             };
             looked = part_until(surface.origin);
             self.look(surface);
+        }
+        if is_wide && !self.is_sure() {
+            self.stretch(&mut |part| {
+                let part = SHARE_BEFORE_STRETCHES + (1.0 - SHARE_BEFORE_STRETCHES) * part;
+                step(progress, Stage::Test, share * part)
+            })?;
         }
         if scans && !self.is_sure() {
             self.scan(axes, progress)?;
@@ -111,6 +153,7 @@ impl<'a> Search<'a> {
             num_windows: 0,
             own: Vec::new(),
             undone: Vec::new(),
+            stretched: Vec::new(),
             scanned: None,
         };
         search.look(suspect);
@@ -133,16 +176,10 @@ impl<'a> Search<'a> {
         let mut node = Node::new(surface);
         for &pitch in &pitches {
             for &turn in &self.turns {
-                let is_pilot = |window: &mut Window| {
-                    let (dither, symbol) = self.lattice.at(window.index);
-                    window.dither = dither;
-                    symbol == Symbol::Pilot
-                };
                 let placement = self.lattice.placed(turn, pitch);
-                let mut seen = windows(&node.clusters, &placement);
+                let seen = windows(&node.clusters, &placement);
                 self.num_windows = self.num_windows.max(seen.len());
-                seen.retain_mut(is_pilot);
-                node.pilots.push(seen);
+                node.pilots.push(pilots(seen, &self.lattice));
             }
         }
         self.nodes.push(node);
@@ -203,24 +240,68 @@ impl<'a> Search<'a> {
                 &mut self.undone
             };
             for step in STEPS {
-                let evidence = evidence(&pilots, step / pitch);
-                let place = best.partition_point(|other| other.evidence >= evidence);
-                if place < FOLLOWED {
-                    let candidate = Candidate {
-                        evidence,
-                        nodes: nodes.to_vec(),
-                        strengths: strengths.to_vec(),
-                        view: View {
-                            placement: self.lattice.placed(turn, pitch),
-                            strength,
-                        },
-                        step,
-                    };
-                    best.insert(place, candidate);
-                    best.truncate(FOLLOWED);
-                }
+                let candidate = Candidate {
+                    evidence: evidence(&pilots, step / pitch),
+                    nodes: nodes.to_vec(),
+                    strengths: strengths.to_vec(),
+                    view: View {
+                        stretch: None,
+                        placement: self.lattice.placed(turn, pitch),
+                        strength,
+                    },
+                    step,
+                };
+                keep(best, FOLLOWED, candidate);
             }
         }
+    }
+
+    /// Undoes scales of the suspect along an axis.
+    fn stretch(
+        &mut self,
+        report: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
+    ) -> Result<(), Cancelled> {
+        let suspect = &self.nodes[0];
+        let Some(stretchable) = suspect.surface.stretchable else {
+            return Ok(());
+        };
+        let pitches = suspect.surface.pitches.iter();
+        let half = half(&suspect.clusters);
+        let share = area(&half) / area(&suspect.clusters);
+        let merge = |&pitch: &f64| (pitch, merged(&half, pitch / CELLS_PER_PITCH));
+        let coarse: Vec<(f64, Vec<Cluster>)> = pitches.map(merge).collect();
+        let tries = stretchable.tries();
+        for (number, stretch) in tries.iter().enumerate() {
+            report(number as f64 / tries.len() as f64)?;
+            for (pitch, clusters) in &coarse {
+                let clusters = mapped(clusters, &stretch.map);
+                let area = area(&clusters) / share;
+                if !AREAS_IF_STRETCHED.contains(&(area / (pitch * pitch))) {
+                    continue;
+                }
+                for turn in turns(stretch.axes != [Axes::Distinct; 2]) {
+                    let placement = self.lattice.placed(turn, *pitch);
+                    let view = View::of_suspect(placement, Some(stretch.map));
+                    let pilots = pilots(windows(&clusters, &placement), &self.lattice);
+                    for step in STEPS {
+                        let evidence = evidence(&pilots, step / pitch);
+                        keep(
+                            &mut self.stretched,
+                            1,
+                            Candidate::of_suspect(evidence, view, step),
+                        );
+                    }
+                }
+            }
+            if self
+                .stretched
+                .first()
+                .is_some_and(|best| best.evidence >= 0.5 * ENOUGH)
+            {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Turns the suspect about the axes that its frame cannot tell apart.
@@ -235,16 +316,9 @@ impl<'a> Search<'a> {
             })?;
             let best = self.scanned.as_ref().map_or(0.0, |best| best.evidence);
             if found.evidence > best {
-                self.scanned = Some(Candidate {
-                    evidence: found.evidence,
-                    nodes: vec![0],
-                    strengths: vec![0.0],
-                    view: View {
-                        placement: self.lattice.placed(found.turn, pitch),
-                        strength: 0.0,
-                    },
-                    step: found.step,
-                });
+                let placement = self.lattice.placed(found.turn, pitch);
+                let view = View::of_suspect(placement, None);
+                self.scanned = Some(Candidate::of_suspect(found.evidence, view, found.step));
             }
         }
         Ok(())
@@ -278,6 +352,16 @@ fn part_until(origin: Origin) -> f64 {
         }
     };
     (place + 1) as f64 / (2 + num_nodes()) as f64
+}
+
+/// Of windows, those that hold pilots, with what the key adds to their phases.
+fn pilots(mut windows: Vec<Window>, lattice: &Lattice) -> Vec<Window> {
+    windows.retain_mut(|window| {
+        let (dither, symbol) = lattice.at(window.index);
+        window.dither = dither;
+        symbol == Symbol::Pilot
+    });
+    windows
 }
 
 /// How well pilots agree with a quantizer's step, in nats.

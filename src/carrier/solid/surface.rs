@@ -4,6 +4,7 @@ use super::frame::Axes;
 use super::pitch::{MOST_PITCHES, PITCHES};
 use super::store::Store;
 use super::strength::FAMILIES;
+use super::stretch::Stretchable;
 use crate::carrier::{StoredError, possible, take};
 
 /// How a surface came from the suspect.
@@ -37,6 +38,8 @@ pub struct Surface {
     pub(super) origin: Origin,
     /// The first and the second axis; the second and the third.
     pub(super) axes: [Axes; 2],
+    /// Of the suspect itself, where somebody may have stretched it.
+    pub(super) stretchable: Option<Stretchable>,
     /// The pitches that it is read at.
     pub(super) pitches: Vec<f64>,
     /// Fine enough for all of them.
@@ -49,13 +52,14 @@ impl Surface {
         Surface {
             origin: Origin::Suspect,
             axes: [Axes::Distinct; 2],
+            stretchable: None,
             pitches: Vec::new(),
             store: Store::new(&[], PITCHES[0]),
         }
     }
 
-    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch, and its store where
-    /// there is any pitch.
+    /// Takes a surface from the beginning of bytes: its origin in 2, what its axes are in 2, a bit for each pitch; where there is any pitch,
+    /// of the suspect itself what undoing a stretch needs, and its store.
     pub fn read(bytes: &mut &[u8]) -> Result<Surface, StoredError> {
         let origin = Origin::read(take(bytes)?).ok_or(StoredError::Damaged)?;
         let [first, second] = take(bytes)?;
@@ -76,9 +80,14 @@ impl Surface {
             let is_unread = (origin, axes) == (unread.origin, unread.axes);
             return is_unread.then_some(unread).ok_or(StoredError::Damaged);
         };
+        let stretchable = match origin {
+            Origin::Suspect => Some(Stretchable::read(bytes)?),
+            _ => None,
+        };
         Ok(Surface {
             origin,
             axes,
+            stretchable,
             store: Store::read(bytes, finest)?,
             pitches,
         })
@@ -95,6 +104,9 @@ impl Surface {
         let bit = |own: &f64| 1u8 << PITCHES.partition_point(|pitch| pitch < own);
         bytes.push(self.pitches.iter().map(bit).sum());
         if !self.pitches.is_empty() {
+            if let Some(stretchable) = &self.stretchable {
+                stretchable.write(bytes);
+            }
             self.store.write(bytes);
         }
     }

@@ -6,6 +6,7 @@ use super::frame::{Axes, axes_of};
 use super::pitch::{LARGEST_AREA, SPIKY, SPIKY_IF_FEW, pitches_of};
 use super::store::Store;
 use super::strength::{FAMILIES, FIRST_FAMILY, HELD_FAMILY, OTHER_FAMILIES};
+use super::stretch::Stretchable;
 use super::surface::{Origin, Surface};
 use crate::geometry::spectral::{self, InverseFilter};
 use crate::geometry::{Pose, oriented, refined};
@@ -157,6 +158,9 @@ impl Surfaces {
                     Some(_) => [Axes::Distinct; 2],
                     None => axes_of(&own),
                 },
+                // Who knows how a suspect lies knows too that nobody stretched it.
+                stretchable: (origin == Origin::Suspect && self.facing.is_none())
+                    .then(|| Stretchable::of(&own)),
                 pitches,
                 store: Store::new(&clusters(&mesh, &own, finest), finest),
             })

@@ -154,7 +154,7 @@ export class Check extends View<Stage> {
     return card(
       isOther ? "partial" : reading.verdict,
       isOther ? `Your key’s mark, with ${reading.tag === null ? "number" : "tag"} ${name}, not ${expected}` : VERDICTS[reading.verdict],
-      [`${model.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${expected === null ? "" : `, looked at for the tag ${expected}`}.`, ...sentences(reading)],
+      [`${model.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}${expected === null ? "" : `, looked at for the tag ${expected}`}.`, ...sentences(reading)],
       ...(reading.input === "evidence" && isMark(reading) ? [h("p", { class: "sentence" }, EVIDENCE)] : []),
       ...(isMark(reading)
         ? [h("p", { class: "hint" }, PROVES), figures, details("Carriers and file", carriers, file)]
@@ -181,11 +181,12 @@ function sentences(reading: DetailedExtraction): string[] {
   const { verdict, reason, tag } = reading;
   const why = reason === null ? [] : [plain(reason)];
   const where = homes(reading);
+  const beside = [...(where === null ? [] : [`Read from ${where}.`]), ...(reading.caution === null ? [] : [plain(reading.caution)])];
   switch (verdict) {
     case "found":
-      return [...(tag === null ? why : [`It carries the tag ${tag}, written with this key.`]), ...(where === null ? [] : [`Read from ${where}.`])];
+      return [...(tag === null ? why : [`It carries the tag ${tag}, written with this key.`]), ...beside];
     case "present":
-      return ["Its mark says whose it is, and holds no tag, or none that can be read any more.", ...(where === null ? [] : [`Read from ${where}.`])];
+      return ["Its mark says whose it is, and holds no tag, or none that can be read any more.", ...beside];
     case "none":
       return ["What was read agrees with this key no better than by chance. This does not prove that the model is not yours."];
     case "cannot-check":

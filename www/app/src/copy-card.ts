@@ -2,7 +2,7 @@
 import { downloads, reportOf, whose, type Copy } from "./copy";
 import { button, h } from "./dom";
 import { renamed } from "./model";
-import { actions, card, carrierTable, details, displacement, forecastList, numbers, readingRows } from "./outcome";
+import { actions, card, carrierTable, details, displacement, forecastList, numbers, readingRows, type Row } from "./outcome";
 import { saveJson } from "./save";
 import { CARRIERS, holders, isMark, losses, plain, significant } from "./words";
 
@@ -16,7 +16,7 @@ export interface CopyEvents {
 }
 
 export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }: CopyEvents): HTMLElement {
-  const { marked, report, owner, asked } = copy;
+  const { marked, report, owner, work, asked } = copy;
   const { readBack } = report;
   const holds = isMark(readBack);
   const small = report.number === null ? [`The model is too small to hold the tag ${asked.tag}: its mark says whose it is, and no more.`] : [];
@@ -33,6 +33,7 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     numbers([
       ...readingRows(readBack),
       ["Owner", owner ?? "a key file"],
+      ...rowsOf(work),
       ["Read from", holders(readBack).map((name) => CARRIERS[name].name).join(", "), "Where the mark lives in this copy: in its shape, or in how its vertices are connected."],
     ]),
     displacement(report),
@@ -54,4 +55,8 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     ),
     actions(button("Check this copy", onCheck), ...(holds && ofThisVisit ? [button("Try to break it", ofThisVisit.onBreak)] : []), button("Dismiss", onDismiss)),
   );
+}
+
+function rowsOf(work: string | null): Row[] {
+  return work ? [["Title of the work", work, "Checking a copy needs it, as it is written here."]] : [];
 }

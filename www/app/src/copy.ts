@@ -30,13 +30,15 @@ export interface Copy {
   report: EmbedReport;
   /** Whose key it was; `null` for a key file. */
   owner: string | null;
+  /** The title of the work whose key it was; `null` for none. */
+  work: string | null;
   asked: Asked;
 }
 
 export function copyOf(host: Model, { model, files, report }: Embedding, key: KeySource, asked: Asked): Copy {
   const marked: Model = { name: copyName(host, "marked"), bytes: model as Model["bytes"], buffers: { ...host.buffers, ...files }, images: host.images };
   const made = new Date().toISOString();
-  return { id: `${report.markedSha256} ${marked.name}`, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, asked };
+  return { id: `${report.markedSha256} ${marked.name}`, made, host: host.name, hostBytes: sizeOf(host), marked, files: Object.keys(files), report, owner: key.owner, work: key.work, asked };
 }
 
 /** What is to be downloaded, by its name: the model, or an archive of it with all that it names. */
@@ -64,9 +66,9 @@ function isAlone(model: Model): boolean {
 }
 
 /** All of it that can be kept beside the original, as JSON. */
-export async function reportOf({ made, host, hostBytes, marked, owner, asked, report }: Copy): Promise<object> {
+export async function reportOf({ made, host, hostBytes, marked, owner, work, asked, report }: Copy): Promise<object> {
   const meshmark = await (await engine).version();
-  return { kind: "embed", meshmark, made, owner, host, hostBytes, marked: marked.name, markedBytes: sizeOf(marked), asked, forecastSeed: FORECAST_SEED, report };
+  return { kind: "embed", meshmark, made, owner, work, host, hostBytes, marked: marked.name, markedBytes: sizeOf(marked), asked, forecastSeed: FORECAST_SEED, report };
 }
 
 /** Whose the copy is and what a check will read, for a person: "the tag ADA-1 of Ada". */

@@ -14,6 +14,7 @@ const owner = find<HTMLInputElement>("#owner");
 const passphrase = find<HTMLInputElement>("#passphrase");
 const again = find<HTMLInputElement>("#passphrase-again");
 const strength = find("#passphrase-strength");
+const work = find<HTMLInputElement>("#work");
 const keyFile = find<HTMLInputElement>("#key-file");
 const state = find("#key-file-state");
 
@@ -31,6 +32,8 @@ export type KeyMaker = (client: Client, progress: Progress) => Promise<Uint8Arra
 export interface KeySource {
   /** Whose it is; `null` where a key file says no name. */
   owner: string | null;
+  /** The title of the work whose key it is; `null` where the owner's works share one. */
+  work: string | null;
   make: KeyMaker;
   /** Whether the fields say it still. */
   isInForm(): boolean;
@@ -112,6 +115,13 @@ export const strangerKey: KeyMaker = async () => crypto.getRandomValues(new Uint
 
 /** The key of what the fields say now, whatever they say later. */
 export function keySource(): KeySource {
+  const of = ownersKey();
+  const title = work.value.trim();
+  const isInForm = () => of.isInForm() && work.value.trim() === title;
+  return title === "" ? { ...of, work: null, isInForm } : { ...of, work: title, make: workKey(of.make, title), isInForm };
+}
+
+function ownersKey(): Omit<KeySource, "work"> {
   if (source() === "file") {
     const key = fileKeys[0]!.bytes;
     return { owner: null, make: async () => key.slice(), isInForm: () => source() === "file" && fileKeys.length === 1 && isSame(fileKeys[0]!.bytes, key) };
@@ -124,6 +134,17 @@ export function keySource(): KeySource {
       return client.deriveKey(name, secret, { signal });
     },
     isInForm: () => source() === "passphrase" && owner.value.trim() === name.trim() && passphrase.value === secret,
+  };
+}
+
+function workKey(make: KeyMaker, title: string): KeyMaker {
+  return async (client, progress) => {
+    const owners = await make(client, progress);
+    try {
+      return await client.workKey(owners, title, { signal: progress.signal });
+    } finally {
+      owners.fill(0);
+    }
   };
 }
 

@@ -303,7 +303,7 @@ export class Protect extends View<Stage> {
 }
 
 /** A key of nobody's, for what is tried before there is one. */
-const STRANGER: KeySource = { owner: null, make: strangerKey, isInForm: () => true };
+const STRANGER: KeySource = { owner: null, work: null, make: strangerKey, isInForm: () => true };
 
 async function embed(model: Model, makeKey: KeyMaker, { tag, strength, carriers }: Asked, progress: Progress): Promise<Embedding> {
   const options: EmbedOptions = { strength, carriers, files: model.buffers };

@@ -37,6 +37,7 @@ export interface ClientOptions {
 /** The functions of `meshmark` with the same arguments; a `signal` among their options ends a call. They reject with `MeshmarkError`. */
 export interface Client {
   deriveKey(owner: string, passphrase: string, options?: CallOptions): Promise<Uint8Array>;
+  workKey(key: Uint8Array, title: string, options?: CallOptions): Promise<Uint8Array>;
   embed(model: Uint8Array, payload: Payload, key: Uint8Array, options?: EmbedOptions & CallOptions): Promise<Embedding>;
   measure(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Uint8Array>;
   measureMesh(positions: Float64Array, triangles: Uint32Array, options?: MeasureMeshOptions & CallOptions): Promise<Uint8Array>;
@@ -64,6 +65,7 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl }: ClientOpti
   const remote = new Remote(() => startWorker(workerUrl), { wasmUrl: absolute(wasmUrl), codecsUrl: absolute(codecsUrl) });
   const client: Client = {
     deriveKey: (owner, passphrase, options) => remote.call("deriveKey", [owner, passphrase], options),
+    workKey: (key, title, options) => remote.call("workKey", [key, title], options),
     embed: (model, payload, key, options) => remote.call("embed", [model, payload, key], options),
     measure: (model, options) => remote.call("measure", [model], options),
     measureMesh: (positions, triangles, options) => remote.call("measureMesh", [positions, triangles], options),

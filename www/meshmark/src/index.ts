@@ -134,6 +134,7 @@ function guarded<N extends Name>(name: N): (typeof wasm)[N] {
 }
 
 export const deriveKey = guarded("deriveKey");
+export const workKey = guarded("workKey");
 export const embed = guarded("embed");
 export const measure = guarded("measure");
 export const measureMesh = guarded("measureMesh");

@@ -17,6 +17,7 @@ import {
   MeshmarkError,
   verify,
   version,
+  workKey,
 } from "./index.js";
 import { answer } from "./remote.js";
 
@@ -40,6 +41,7 @@ function reading<Arguments extends unknown[], Result>(f: (...args: Arguments) =>
 answer(
   {
     deriveKey,
+    workKey,
     embed: reading(embed),
     measure: reading(measure),
     measureMesh,

@@ -60,10 +60,10 @@ pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
-    Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
+    Advice, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport, Embedding, Error,
     Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
     NoteReading, NoteReport, NoteSize, Strength, Surface, Suspect, Unshown, Verdict, capacity,
-    decompress, detect, embed, embed_note, extract, extract_many, file_names, inspect, measure,
+    compare, decompress, detect, embed, embed_note, extract, extract_many, file_names, inspect, measure,
     note_capacity, read_note, verify,
 };
 

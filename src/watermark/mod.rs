@@ -6,6 +6,7 @@ mod embed;
 mod error;
 mod extract;
 mod forecast;
+mod informed;
 mod inspect;
 mod judge;
 mod marking;
@@ -21,6 +22,7 @@ pub use capacity::{Capacity, Holds, capacity};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error};
 pub use extract::{detect, extract, extract_many, measure, verify};
+pub use informed::{Comparison, compare};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
 pub use note::{

@@ -23,6 +23,7 @@
 //! | `search` | detecting: the ways of reading that the pilots choose |
 //! | `field`, `scan` | detecting: turns, where the frame does not determine its axes |
 //! | `refine` | detecting: where exactly the lattice lies |
+//! | `informed` | detecting with the original: what a suspect shows of what the embedder must have done |
 //! | `reading` | detecting: what the chosen ways say, and what they are charged |
 //! | `measurement` | all surfaces of a suspect, as they are kept and read |
 //!
@@ -34,6 +35,7 @@ mod field;
 mod frame;
 mod freedom;
 mod grid;
+mod informed;
 mod lattice;
 mod lists;
 mod measurement;
@@ -53,6 +55,7 @@ mod surfaces;
 mod window;
 
 pub use frame::has_axes;
+pub use informed::{Place, Seen, Way, read_with_original};
 pub use measurement::{Measurement, Suspect, piece};
 pub use objects::embed;
 pub use surface::Surface;

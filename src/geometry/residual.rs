@@ -144,7 +144,11 @@ impl<'a> Shown<'a> {
         });
         let feet: Vec<_> = feet.collect();
         // A file may face inwards.
-        let turned = feet.iter().map(|(_, _, agree, _)| agree.signum()).sum::<f64>() < 0.0;
+        let turned = feet
+            .iter()
+            .map(|(_, _, agree, _)| agree.signum())
+            .sum::<f64>()
+            < 0.0;
         let facing = if turned { -1.0 } else { 1.0 };
         let mut seen = Vec::new();
         let mut columns = Vec::new();
@@ -174,7 +178,9 @@ impl<'a> Shown<'a> {
         level(&mut columns);
         let values: Vec<f64> = seen.iter().map(|(_, along)| *along).collect();
         let left = without(&columns, values, d);
-        seen.iter_mut().zip(left).for_each(|(seen, left)| seen.1 = left);
+        seen.iter_mut()
+            .zip(left)
+            .for_each(|(seen, left)| seen.1 = left);
         Some(Shown {
             views,
             original,
@@ -226,7 +232,9 @@ impl<'a> Shown<'a> {
             .iter()
             .map(|&anchor| {
                 let around = near.nearest(place(anchor as usize), count);
-                let values = around.iter().map(|&(_, at)| self.seen[few[at as usize] as usize].1);
+                let values = around
+                    .iter()
+                    .map(|&(_, at)| self.seen[few[at as usize] as usize].1);
                 let mut values: Vec<f64> = values.collect();
                 let middle = median(&mut values);
                 values.iter_mut().for_each(|v| *v = (*v - middle).abs());
@@ -256,7 +264,8 @@ impl<'a> Shown<'a> {
     }
 }
 
-fn median(values: &mut [f64]) -> f64 {
+/// The value in the middle; 0 of none.
+pub(super) fn median(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     match values.is_empty() {
         true => 0.0,

@@ -42,7 +42,9 @@ pub fn scattered(mesh: &Mesh, count: usize, seed: u64) -> Vec<Point> {
             let normal = own[0] * weights[0] + own[1] * weights[1] + own[2] * weights[2];
             points.push(Point {
                 position: a * weights[0] + b * weights[1] + c * weights[2],
-                normal: normal.try_normalize().unwrap_or(twice_area.normalize_or_zero()),
+                normal: normal
+                    .try_normalize()
+                    .unwrap_or(twice_area.normalize_or_zero()),
                 triangle,
                 weights,
             });

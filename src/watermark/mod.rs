@@ -1,12 +1,12 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
 mod capacity;
+mod compare;
 mod displace;
 mod embed;
 mod error;
 mod extract;
 mod forecast;
-mod informed;
 mod inspect;
 mod judge;
 mod marking;
@@ -17,12 +17,13 @@ mod read_back;
 mod report;
 mod suspect;
 mod unshown;
+mod weigh;
 
 pub use capacity::{Capacity, Holds, capacity};
+pub use compare::compare;
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error};
 pub use extract::{detect, extract, extract_many, measure, verify};
-pub use informed::{Comparison, compare};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
 pub use note::{
@@ -30,7 +31,7 @@ pub use note::{
 };
 pub use options::{EmbedOptions, Strength};
 pub use report::{
-    CarrierReading, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level, Unshown,
-    Verdict,
+    CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
+    Shape, Unshown, Verdict, Witness,
 };
 pub use suspect::{Surface, Suspect};

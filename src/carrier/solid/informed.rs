@@ -12,7 +12,7 @@ use super::freedom::{freedoms, typical};
 use super::lattice::{Lattice, Placement, RADIUS};
 use super::pitch::{AREAS, AREAS_TO_EMBED, pitches};
 use super::problem::Problem;
-use super::quantizer::STEPS;
+use super::quantizer::{STEPS, phase};
 use super::window::{Window, windows};
 use crate::carrier::Host;
 use crate::code::Symbol;
@@ -57,130 +57,161 @@ pub struct Way {
 /// What is seen of a suspect that lies on the original in one way, by the radius of windows.
 pub type Seen<'a> = dyn Fn(f64) -> Vec<Observation> + 'a;
 
-/// Calls `visit` with every declared way of reading, until it returns `true`. `seen` are the ways in which the suspect may lie on the host.
-pub fn read_with_original(
-    host: &Host,
-    key: &Key,
-    seen: &[&Seen],
-    progress: &mut dyn Progress,
-    visit: &mut dyn FnMut(Way) -> bool,
-) -> Result<(), Cancelled> {
-    let lattice = Lattice::of(key);
-    let objects = Pieces::stable_objects(host.mesh);
-    let objects: Vec<_> = objects.into_iter().take(MOST_OBJECTS).collect();
-    let whole: Vec<u32> = (0..host.mesh.positions.len() as u32).collect();
-    let mut frames = vec![(host.mesh.clone(), whole)];
-    for object in objects {
-        let mut vertices: Vec<u32> = object.iter().flatten().copied().collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let mesh = host.mesh.part(object);
-        if has_axes(&mesh) {
-            frames.push((mesh, vertices));
-        }
-    }
-    let num_frames = frames.len();
-    for (number, (mesh, vertices)) in frames.into_iter().enumerate() {
-        step(progress, Stage::Test, number as f64 / num_frames as f64)?;
-        // The whole has half of the probability where there are objects, and they share the rest.
-        let num_shares = match (number, num_frames) {
-            (_, 1) => 1,
-            (0, _) => 2,
-            (_, num) => 2 * (num - 1),
-        };
-        let frame = Frame {
-            mesh,
-            vertices,
-            lattice: &lattice,
-            host,
-            ln_num_shares: libm::log(num_shares as f64),
-        };
-        if frame.read(seen, visit) {
-            break;
-        }
-    }
-    Ok(())
+/// Where an original may have been marked, whoever did it: as a whole, and each of its objects.
+pub struct Frames<'a> {
+    host: &'a Host<'a>,
+    frames: Vec<Frame>,
 }
 
-/// What was marked in one frame: the whole, or an object.
-struct Frame<'a> {
+/// One of these.
+struct Frame {
+    /// Oriented.
     mesh: Mesh,
     /// The names of its vertices in the whole.
     vertices: Vec<u32>,
-    lattice: &'a Lattice,
-    host: &'a Host<'a>,
+    pose: Pose,
+    freedom: Vec<f64>,
     ln_num_shares: f64,
 }
 
-impl Frame<'_> {
-    fn read(&self, seen: &[&Seen], visit: &mut dyn FnMut(Way) -> bool) -> bool {
-        let (mesh, boundary) = oriented(&self.mesh);
-        let Some(pose) = Pose::of_oriented(&mesh, &boundary) else {
-            return false;
-        };
-        let area = mesh.area() / (pose.size * pose.size);
-        let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
-        let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
-        let leeway = self.host.leeway.of(&mesh, &self.vertices);
-        let host = Host {
-            mesh: &mesh,
-            leeway: &leeway,
-            ..*self.host
-        };
-        let freedom = freedoms(&mesh, &boundary, &host, CLAMPS[0]);
-        let num_ways = candidates.len() * seen.len() * STEPS.len() * NOISES.len();
-        let ln_num_tests = libm::log(num_ways as f64) + self.ln_num_shares;
-        for &pitch in &candidates {
-            let placement = self.lattice.placed(DMat3::IDENTITY, pitch);
-            let active = windows(&clusters(&mesh, &pose, finest), &placement);
-            if active.is_empty() {
-                continue;
+impl<'a> Frames<'a> {
+    /// Of an original, as an embedder would have it as a host.
+    pub fn new(host: &'a Host<'a>) -> Frames<'a> {
+        let whole: Vec<u32> = (0..host.mesh.positions.len() as u32).collect();
+        let mut parts = vec![(host.mesh.clone(), whole)];
+        for object in Pieces::stable_objects(host.mesh)
+            .into_iter()
+            .take(MOST_OBJECTS)
+        {
+            let mut vertices: Vec<u32> = object.iter().flatten().copied().collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            let mesh = host.mesh.part(object);
+            if has_axes(&mesh) {
+                parts.push((mesh, vertices));
             }
-            let response = Response::new(&mesh, &pose, &placement, &active, &freedom, host.hidden);
+        }
+        let num_parts = parts.len();
+        let frame = |(number, (mesh, vertices)): (usize, (Mesh, Vec<u32>))| {
+            let (mesh, boundary) = oriented(&mesh);
+            let pose = Pose::of_oriented(&mesh, &boundary)?;
+            let leeway = host.leeway.of(&mesh, &vertices);
+            let own = Host {
+                mesh: &mesh,
+                leeway: &leeway,
+                ..*host
+            };
+            let freedom = freedoms(&mesh, &boundary, &own, CLAMPS[0]);
+            // The whole has half of the probability where there are objects, and they share the rest.
+            let num_shares = match (number, num_parts) {
+                (_, 1) => 1,
+                (0, _) => 2,
+                (_, num) => 2 * (num - 1),
+            };
+            Some(Frame {
+                mesh,
+                vertices,
+                pose,
+                freedom,
+                ln_num_shares: libm::log(num_shares as f64),
+            })
+        };
+        Frames {
+            host,
+            frames: parts.into_iter().enumerate().filter_map(frame).collect(),
+        }
+    }
+
+    /// What a key has to look for there.
+    pub fn with_key(&self, key: &Key) -> Reader<'_> {
+        let lattice = Lattice::of(key);
+        let mut laid = Vec::new();
+        for frame in &self.frames {
+            let area = frame.mesh.area() / (frame.pose.size * frame.pose.size);
+            let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
+            let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
+            let clusters = clusters(&frame.mesh, &frame.pose, finest);
+            for &pitch in &candidates {
+                let placement = lattice.placed(DMat3::IDENTITY, pitch);
+                let active = windows(&clusters, &placement);
+                if active.is_empty() {
+                    continue;
+                }
+                laid.push(Laid {
+                    frame,
+                    response: Response::new(frame, &placement, &active, self.host.hidden),
+                    active,
+                    pitch,
+                    ln_num_ways: libm::log((candidates.len() * WAYS) as f64) + frame.ln_num_shares,
+                });
+            }
+        }
+        Reader { lattice, laid }
+    }
+}
+
+/// Ways that differ in step and noise.
+const WAYS: usize = STEPS.len() * NOISES.len();
+
+/// A key's lattice, laid through an original's frames.
+pub struct Reader<'a> {
+    lattice: Lattice,
+    laid: Vec<Laid<'a>>,
+}
+
+struct Laid<'a> {
+    frame: &'a Frame,
+    pitch: f64,
+    active: Vec<Window>,
+    response: Response<'a>,
+    ln_num_ways: f64,
+}
+
+impl Reader<'_> {
+    /// Calls `visit` with every declared way of reading, until it returns `true`. `seen` are the ways in which the suspect may lie on the
+    /// host.
+    pub fn read(
+        &self,
+        seen: &[&Seen],
+        progress: &mut dyn Progress,
+        visit: &mut dyn FnMut(Way) -> bool,
+    ) -> Result<(), Cancelled> {
+        for (number, laid) in self.laid.iter().enumerate() {
             for (list, observe) in seen.iter().enumerate() {
-                let observations = self.own(observe(RADIUS * pitch * pose.size));
-                let seen = Evidence::new(&response, &observations);
+                let done = (number * seen.len() + list) as f64;
+                let all = (self.laid.len() * seen.len()) as f64;
+                step(progress, Stage::Test, done / all)?;
+                let observations = observe(RADIUS * laid.pitch * laid.frame.pose.size);
+                let observations = laid.frame.own(observations);
+                if observations.is_empty() {
+                    continue;
+                }
+                let evidence = Evidence::new(&laid.response, &observations);
                 for noise in NOISES {
-                    let responses = seen.responses(noise);
+                    let responses = evidence.responses(noise);
                     for step in STEPS {
-                        let places = self.places(&active, &responses, step / pitch);
                         let way = Way {
-                            places,
-                            ln_num_tests,
+                            places: laid.places(&self.lattice, &responses, step / laid.pitch),
+                            ln_num_tests: laid.ln_num_ways + libm::log(seen.len() as f64),
                             list,
                         };
                         if visit(way) {
-                            return true;
+                            return Ok(());
                         }
                     }
                 }
             }
         }
-        false
+        Ok(())
     }
+}
 
-    /// What is seen of this frame's vertices, by their own names.
-    fn own(&self, observations: Vec<Observation>) -> Vec<Observation> {
-        if self.vertices.len() == self.host.mesh.positions.len() {
-            return observations;
-        }
-        let own = |observation: Observation| {
-            let name = |v: u32| self.vertices.binary_search(&v).ok();
-            let [a, b, c] = observation.vertices;
-            let vertices = [name(a)? as u32, name(b)? as u32, name(c)? as u32];
-            Some(Observation {
-                vertices,
-                ..observation
-            })
-        };
-        observations.into_iter().filter_map(own).collect()
-    }
-
+impl Laid<'_> {
     /// The windows with their errors at a step, in lattice coordinates.
-    fn places(&self, active: &[Window], responses: &[f64], step: f64) -> Vec<Place> {
+    fn places(&self, lattice: &Lattice, responses: &[f64], step: f64) -> Vec<Place> {
         let place = |(window, &response): (&Window, &f64)| {
-            let (dither, symbol) = self.lattice.at(window.index);
-            let phase = super::quantizer::phase(window.flux / step, dither);
+            let (dither, symbol) = lattice.at(window.index);
+            let phase = phase(window.flux / step, dither);
             let error = |coset: f64| {
                 let phase = phase - coset;
                 phase.round() - phase
@@ -191,7 +222,23 @@ impl Frame<'_> {
                 errors: [error(0.5), error(0.0)],
             }
         };
-        active.iter().zip(responses).map(place).collect()
+        self.active.iter().zip(responses).map(place).collect()
+    }
+}
+
+impl Frame {
+    /// What is seen of this frame's vertices, by their own names.
+    fn own(&self, observations: Vec<Observation>) -> Vec<Observation> {
+        let own = |observation: Observation| {
+            let name = |v: u32| self.vertices.binary_search(&v).ok();
+            let [a, b, c] = observation.vertices;
+            let vertices = [name(a)? as u32, name(b)? as u32, name(c)? as u32];
+            Some(Observation {
+                vertices,
+                ..observation
+            })
+        };
+        observations.into_iter().filter_map(own).collect()
     }
 }
 
@@ -208,13 +255,17 @@ struct Response<'a> {
 
 impl<'a> Response<'a> {
     fn new(
-        mesh: &'a Mesh,
-        pose: &Pose,
+        frame: &'a Frame,
         placement: &Placement,
         active: &[Window],
-        freedom: &'a [f64],
         hidden: bool,
     ) -> Response<'a> {
+        let Frame {
+            mesh,
+            pose,
+            freedom,
+            ..
+        } = frame;
         let mut problem = Problem::new(mesh, pose, placement, active, freedom);
         let weights: Vec<f64> = active.iter().map(|window| window.weight).collect();
         let step = STEPS[0] / placement.pitch;

@@ -55,7 +55,7 @@ mod surfaces;
 mod window;
 
 pub use frame::has_axes;
-pub use informed::{Place, Seen, Way, read_with_original};
+pub use informed::{Frames, Place, Seen, Way};
 pub use measurement::{Measurement, Suspect, piece};
 pub use objects::embed;
 pub use surface::Surface;

@@ -2,9 +2,9 @@
 //! triples of points whose sides have one ratio.
 
 use super::Points;
+use crate::geometry::Motion;
 use crate::geometry::near::Near;
 use crate::geometry::similarity::fitted;
-use crate::geometry::Motion;
 use crate::random::Random;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -140,7 +140,10 @@ impl Look {
         let pairs = [(0, 1), (1, 2), (2, 0)];
         let mut ratios = [0.0; 3];
         for (ratio, (i, j)) in ratios.iter_mut().zip(pairs) {
-            let (a, b) = (own[i].0.distance(own[j].0), theirs[i].0.distance(theirs[j].0));
+            let (a, b) = (
+                own[i].0.distance(own[j].0),
+                theirs[i].0.distance(theirs[j].0),
+            );
             if a < 0.8 * self.radius {
                 return None;
             }
@@ -156,7 +159,10 @@ impl Look {
             return None;
         }
         let offset = self.radius;
-        let points: Vec<DVec3> = own.iter().flat_map(|(p, n)| [*p, *p + *n * offset]).collect();
+        let points: Vec<DVec3> = own
+            .iter()
+            .flat_map(|(p, n)| [*p, *p + *n * offset])
+            .collect();
         let onto: Vec<DVec3> = theirs
             .iter()
             .flat_map(|(p, n)| [*p, *p + *n * (offset * mean)])
@@ -184,7 +190,9 @@ fn thinned(cloud: &Points, cell: f64, radius: f64) -> Vec<(DVec3, DVec3)> {
         };
         let own = cloud.normals[first as usize];
         let around = near.within(centre.to_array(), radius);
-        let others = around.iter().map(|&(_, other)| cloud.normals[other as usize]);
+        let others = around
+            .iter()
+            .map(|&(_, other)| cloud.normals[other as usize]);
         let normal = others.filter(|n| n.dot(own) > 0.0).sum::<DVec3>();
         points.push((
             cloud.positions[first as usize],

@@ -87,7 +87,9 @@ fn step(
     let cut = (4.0 * median).max(least_cut).min(cap.max(least_cut));
     let centre = pairs.iter().map(|(at, _, _)| *at).sum::<DVec3>() / pairs.len() as f64;
     let spread = pairs.iter().map(|(at, _, _)| at.distance_squared(centre));
-    let size = (spread.sum::<f64>() / pairs.len() as f64).sqrt().max(f64::MIN_POSITIVE);
+    let size = (spread.sum::<f64>() / pairs.len() as f64)
+        .sqrt()
+        .max(f64::MIN_POSITIVE);
     let num = freedom.num();
     let mut products = SMatrix::<f64, MOST, MOST>::zeros();
     let mut right = SVector::<f64, MOST>::zeros();
@@ -149,7 +151,10 @@ fn moved(freedom: Freedom, x: &[f64], centre: DVec3, size: f64) -> Motion {
             } else {
                 DMat3::IDENTITY
             };
-            (rotation * (1.0 + x[6] / size).max(0.5), DVec3::new(x[3], x[4], x[5]))
+            (
+                rotation * (1.0 + x[6] / size).max(0.5),
+                DVec3::new(x[3], x[4], x[5]),
+            )
         }
         Freedom::Affine => {
             let rows: [DVec3; 3] =

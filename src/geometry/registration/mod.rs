@@ -116,7 +116,7 @@ pub struct Registration {
     /// The share of the suspect's surface that lies on the original then, normals agreeing: 0 to 1.
     pub near: f64,
     /// The same, nearer: what tells the sides of a symmetric shape.
-    exact: f64,
+    pub exact: f64,
 }
 
 impl Registration {
@@ -249,7 +249,9 @@ impl<'a> Found<'a> {
         scored.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut followed: Vec<Motion> = Vec::new();
         for (_, motion) in scored {
-            let is_new = followed.iter().all(|other| self.differs(other, &motion, 0.02));
+            let is_new = followed
+                .iter()
+                .all(|other| self.differs(other, &motion, 0.02));
             if is_new && followed.len() < FOLLOWED {
                 followed.push(motion);
             }
@@ -284,7 +286,8 @@ impl<'a> Found<'a> {
         let best = self.best();
         let mut kept: Vec<Registration> = Vec::new();
         for candidate in all {
-            let is_new = |other: &Registration| self.differs(&other.motion, &candidate.motion, 0.005);
+            let is_new =
+                |other: &Registration| self.differs(&other.motion, &candidate.motion, 0.005);
             if candidate.near > best - NEARLY && kept.len() < KEPT && kept.iter().all(is_new) {
                 kept.push(candidate);
             }

@@ -21,6 +21,14 @@ import {
 import { answer } from "./remote.js";
 
 let codecsUrl: string | undefined;
+let informedUrl: string | undefined;
+
+/** The module that reads with the original, once it was asked for. */
+async function informed(): Promise<typeof import("./informed.js")> {
+  const module = await import("./informed.js");
+  await module.init(informedUrl);
+  return module;
+}
 
 /** A function that reads models: where one is compressed, again with the module that has the codecs. */
 function reading<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
@@ -51,11 +59,14 @@ answer(
     decompress: reading(decompress),
     inspect: reading(inspect),
     capacity: reading(capacity),
+    compare: async (...args: Parameters<typeof import("./informed.js").compare>) => (await informed()).compare(...args),
+    compareMesh: async (...args: Parameters<typeof import("./informed.js").compareMesh>) => (await informed()).compareMesh(...args),
     demoModel,
     version,
   },
   (setup) => {
     codecsUrl = setup?.["codecsUrl"];
+    informedUrl = setup?.["informedUrl"];
     return init(setup?.["wasmUrl"]);
   },
 );

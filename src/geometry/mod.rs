@@ -59,7 +59,7 @@ pub use quadric::{Quadric, collapse_costs};
 pub use quality::Quality;
 pub use registration::{LEAST_NEAR, Original, Registration, Search};
 pub use repeats::without_repeats;
-pub use residual::{Observation, Shown, Views};
+pub use residual::{Observation, Shown, Views, affine_fit};
 pub use roughness::roughness;
 pub use rounding::{evenly, rounded, rounded_for_web};
 pub use scatter::{Point, scattered};

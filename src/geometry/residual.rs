@@ -341,15 +341,33 @@ fn level(rows: &mut [[f64; COLUMNS]]) {
     }
 }
 
-/// Values without what columns explain of them: least squares, in rounds that give what does not fit less weight (Cauchy's).
+/// The affine map that explains most of some values, by how each answers to its twelve numbers; and what is left of them. `None` where there is
+/// none.
+pub fn affine_fit(rows: &[[f64; 12]], values: &[f64]) -> Option<([f64; 12], Vec<f64>)> {
+    let least = 1e-9 * values.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let (x, left) = fitted(rows, values, least);
+    x.map(|x| (x, left))
+}
+
+/// Values without what columns explain of them.
 fn without(rows: &[[f64; COLUMNS]], values: Vec<f64>, diagonal: f64) -> Vec<f64> {
+    fitted(rows, &values, 1e-9 * diagonal).1
+}
+
+/// Least squares, in rounds that give what does not fit less weight (Cauchy's); what is less than `least` fits.
+fn fitted<const N: usize>(
+    rows: &[[f64; N]],
+    values: &[f64],
+    least: f64,
+) -> (Option<[f64; N]>, Vec<f64>) {
     let mut weights = vec![1.0; rows.len()];
-    let mut left = values.clone();
+    let mut left = values.to_vec();
+    let mut solution = None;
     for _ in 0..ROUNDS {
-        let mut products = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
-        let mut right = SVector::<f64, COLUMNS>::zeros();
-        for ((row, value), weight) in rows.iter().zip(&values).zip(&weights) {
-            for i in 0..COLUMNS {
+        let mut products = SMatrix::<f64, N, N>::zeros();
+        let mut right = SVector::<f64, N>::zeros();
+        for ((row, value), weight) in rows.iter().zip(values).zip(&weights) {
+            for i in 0..N {
                 let scaled = weight * row[i];
                 right[i] += scaled * value;
                 for j in 0..=i {
@@ -357,8 +375,8 @@ fn without(rows: &[[f64; COLUMNS]], values: Vec<f64>, diagonal: f64) -> Vec<f64>
                 }
             }
         }
-        let damping = 1e-10 * products.trace() / COLUMNS as f64;
-        for i in 0..COLUMNS {
+        let damping = 1e-10 * products.trace() / N as f64;
+        for i in 0..N {
             products[(i, i)] += damping;
             for j in 0..i {
                 products[(j, i)] = products[(i, j)];
@@ -368,15 +386,16 @@ fn without(rows: &[[f64; COLUMNS]], values: Vec<f64>, diagonal: f64) -> Vec<f64>
             break;
         };
         let x = factor.solve(&right);
-        for ((left, value), row) in left.iter_mut().zip(&values).zip(rows) {
-            *left = value - (0..COLUMNS).map(|i| x[i] * row[i]).sum::<f64>();
+        solution = Some(std::array::from_fn(|i| x[i]));
+        for ((left, value), row) in left.iter_mut().zip(values).zip(rows) {
+            *left = value - (0..N).map(|i| x[i] * row[i]).sum::<f64>();
         }
         let mut sizes: Vec<f64> = left.iter().map(|e| e.abs()).collect();
-        let scale = 2.0 * (1.4826 * median(&mut sizes) + 1e-9 * diagonal);
+        let scale = 2.0 * (1.4826 * median(&mut sizes) + least);
         for (weight, e) in weights.iter_mut().zip(&left) {
             let ratio = e / scale;
             *weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
         }
     }
-    left
+    (solution, left)
 }

@@ -50,7 +50,11 @@ impl Options {
     }
 
     /// Who hears of progress; nobody where that was left out.
-    #[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
+    #[cfg(any(
+        feature = "wasm-marks",
+        feature = "wasm-study",
+        feature = "wasm-informed"
+    ))]
     pub fn listener(&self) -> Result<super::listener::Listener, JsValue> {
         let on_progress = self.get("onProgress");
         let function = match on_progress.is_undefined() {

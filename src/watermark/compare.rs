@@ -43,18 +43,9 @@ fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Comparis
     let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
-    let options = EmbedOptions::default();
-    let parts = scene.parts();
-    let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
-    let host = Host {
-        mesh: &scene.mesh,
-        leeway: &leeway,
-        admissible: &scene.admissible,
-        rms_rel: options.strength.rms_rel(),
-        hidden: options.strength.is_hidden(),
-        on_top: false,
-    };
-    let heard = hear(&host, &mesh, key, &mut suspect)?;
+    let heard = with_host(&scene, &options_of_original(), |host| {
+        hear(host, &mesh, key, &mut suspect)
+    })??;
     let blind = match heard.ln_p_payload <= LN_P_FOUND {
         true => None,
         false => Some(read_blind(&mesh, key, &mut suspect)?),
@@ -63,22 +54,45 @@ fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Comparis
     Ok(conclude(heard, blind))
 }
 
-/// What was read with the original.
-struct Heard {
-    ln_p_presence: f64,
-    ln_p_payload: f64,
-    payload: Option<Payload>,
-    witness: Witness,
+/// How an original may have been marked: which strength it was does not matter much, for what counts is how vertices move together.
+pub(super) fn options_of_original() -> EmbedOptions {
+    EmbedOptions::default()
+}
+
+/// Does something with a scene as a host.
+pub(super) fn with_host<T>(
+    scene: &Scene,
+    options: &EmbedOptions,
+    then: impl FnOnce(&Host) -> T,
+) -> Result<T, Error> {
+    let parts = scene.parts();
+    let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
+    Ok(then(&Host {
+        mesh: &scene.mesh,
+        leeway: &leeway,
+        admissible: &scene.admissible,
+        rms_rel: options.strength.rms_rel(),
+        hidden: options.strength.is_hidden(),
+        on_top: false,
+    }))
+}
+
+/// What was read with the original, or with its record.
+pub(super) struct Heard {
+    pub ln_p_presence: f64,
+    pub ln_p_payload: f64,
+    pub payload: Option<Payload>,
+    pub witness: Witness,
     /// The likeliest way in which the suspect lies on the original, and the one that was read.
-    first: Option<Lay>,
-    read: Option<Lay>,
+    pub first: Option<Lay>,
+    pub read: Option<Lay>,
 }
 
 /// How a suspect lies on the original.
 #[derive(Clone, Copy)]
-struct Lay {
-    registration: Registration,
-    covered: f64,
+pub(super) struct Lay {
+    pub registration: Registration,
+    pub covered: f64,
 }
 
 /// The same, and what is seen of it.
@@ -174,7 +188,8 @@ fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
 }
 
 /// Reads without the original, at half of the probability of a false alarm.
-fn read_blind(mesh: &Mesh, key: &Key, progress: &mut dyn Progress) -> Result<Blind, Error> {
+pub(super) fn read_blind(
+    mesh: &Mesh, key: &Key, progress: &mut dyn Progress) -> Result<Blind, Error> {
     let judge = Judge::new(key, None, Input::Model).one_of(2);
     let mut readings = Carrier::ALL.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
@@ -189,14 +204,14 @@ fn read_blind(mesh: &Mesh, key: &Key, progress: &mut dyn Progress) -> Result<Bli
     })
 }
 
-struct Blind {
+pub(super) struct Blind {
     verdict: Verdict,
     number: Option<u64>,
     ln_p: f64,
 }
 
 /// One answer. What is said of the shape follows no key, unless the mark is found.
-fn conclude(heard: Heard, blind: Option<Blind>) -> Comparison {
+pub(super) fn conclude(heard: Heard, blind: Option<Blind>) -> Comparison {
     let own = match heard {
         _ if heard.ln_p_payload <= LN_P_FOUND => (Verdict::Found, heard.ln_p_payload),
         _ if heard.ln_p_presence <= LN_P_FOUND => (Verdict::Present, heard.ln_p_presence),

@@ -14,6 +14,7 @@ mod model;
 mod note;
 mod options;
 mod read_back;
+mod record;
 mod report;
 mod suspect;
 mod unshown;
@@ -22,7 +23,7 @@ mod weigh;
 pub use capacity::{Capacity, Holds, capacity};
 pub use compare::compare;
 pub use embed::{Embedding, embed};
-pub use error::{Advice, Error};
+pub use error::{Advice, Error, RecordError};
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
@@ -30,6 +31,7 @@ pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };
 pub use options::{EmbedOptions, Strength};
+pub use record::{RecordOptions, compare_with_record, record};
 pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
     Shape, Unshown, Verdict, Witness,

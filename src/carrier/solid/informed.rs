@@ -60,18 +60,19 @@ pub type Seen<'a> = dyn Fn(f64) -> Vec<Observation> + 'a;
 /// Where an original may have been marked, whoever did it: as a whole, and each of its objects.
 pub struct Frames<'a> {
     host: &'a Host<'a>,
-    frames: Vec<Frame>,
+    pub(super) frames: Vec<Frame>,
 }
 
 /// One of these.
-struct Frame {
+pub(super) struct Frame {
     /// Oriented.
-    mesh: Mesh,
+    pub mesh: Mesh,
     /// The names of its vertices in the whole.
     vertices: Vec<u32>,
-    pose: Pose,
+    pub pose: Pose,
     freedom: Vec<f64>,
-    ln_num_shares: f64,
+    /// What it is charged for being one of several.
+    pub ln_num_shares: f64,
 }
 
 impl<'a> Frames<'a> {
@@ -127,9 +128,7 @@ impl<'a> Frames<'a> {
         let lattice = Lattice::of(key);
         let mut laid = Vec::new();
         for frame in &self.frames {
-            let area = frame.mesh.area() / (frame.pose.size * frame.pose.size);
-            let candidates: Vec<f64> = pitches(area, AREAS_TO_EMBED).collect();
-            let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
+            let (candidates, finest) = frame.pitches();
             let clusters = clusters(&frame.mesh, &frame.pose, finest);
             for &pitch in &candidates {
                 let placement = lattice.placed(DMat3::IDENTITY, pitch);
@@ -227,6 +226,14 @@ impl Laid<'_> {
 }
 
 impl Frame {
+    /// The pitches that an embedder may have used, and the one that it gathered clusters for.
+    pub fn pitches(&self) -> (Vec<f64>, f64) {
+        let area = self.mesh.area() / (self.pose.size * self.pose.size);
+        let candidates = pitches(area, AREAS_TO_EMBED).collect();
+        let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
+        (candidates, finest)
+    }
+
     /// What is seen of this frame's vertices, by their own names.
     fn own(&self, observations: Vec<Observation>) -> Vec<Observation> {
         let own = |observation: Observation| {

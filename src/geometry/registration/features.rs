@@ -1,7 +1,7 @@
 //! Where a piece may lie, by what the surface looks like about points: histograms of normals (FPFH: Rusu, Blodow and Beetz 2009), and
 //! triples of points whose sides have one ratio.
 
-use super::Points;
+use super::points::Points;
 use crate::geometry::Motion;
 use crate::geometry::near::Near;
 use crate::geometry::similarity::fitted;

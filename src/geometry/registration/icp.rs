@@ -1,6 +1,6 @@
 //! Point to plane: a motion that is nearly right becomes as right as the surfaces allow.
 
-use super::Points;
+use super::points::Points;
 use crate::geometry::{Motion, Surface};
 use glam::{DMat3, DVec3};
 use nalgebra::{SMatrix, SVector};

@@ -3,6 +3,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `moments` | where a whole copy may lie |
+//! | `points` | what stands for a suspect |
 //! | `features` | where a piece may lie |
 //! | `icp` | from nearly right to right |
 //!
@@ -11,53 +12,15 @@
 mod features;
 mod icp;
 mod moments;
+mod points;
 
-use super::scatter::scattered;
 use super::{Motion, Surface, diagonal};
 use crate::mesh::Mesh;
 use features::Look;
-use glam::{DMat3, DVec3};
+use points::{MIRROR, Points};
+use glam::DVec3;
 use icp::{Freedom, refined};
 use std::cell::OnceCell;
-
-/// Points of a surface with their normals.
-pub struct Points {
-    positions: Vec<DVec3>,
-    normals: Vec<DVec3>,
-}
-
-impl Points {
-    fn of(mesh: &Mesh, count: usize, seed: u64) -> Points {
-        let (positions, normals) = scattered(mesh, count, seed)
-            .into_iter()
-            .map(|point| {
-                let [a, b, c] = mesh.corners(mesh.triangles[point.triangle as usize]);
-                (point.position, (b - a).cross(c - a).normalize_or_zero())
-            })
-            .unzip();
-        Points { positions, normals }
-    }
-
-    /// Every so many-th of them.
-    fn fewer(&self, count: usize) -> Points {
-        let step = (self.positions.len() / count.max(1)).max(1);
-        let few = |all: &[DVec3]| all.iter().step_by(step).copied().collect();
-        Points {
-            positions: few(&self.positions),
-            normals: few(&self.normals),
-        }
-    }
-
-    fn mirrored(&self) -> Points {
-        let mirror = |all: &[DVec3]| all.iter().map(|p| MIRROR * *p).collect();
-        Points {
-            positions: mirror(&self.positions),
-            normals: mirror(&self.normals),
-        }
-    }
-}
-
-const MIRROR: DMat3 = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
 
 /// Points that candidates are scored on, that they are refined on, and that the last steps are made on.
 const SCORED: usize = 400;
@@ -182,6 +145,18 @@ impl<'a> Original<'a> {
         looks
             .flat_map(|(original, seed)| look.onto(original, seed))
             .collect()
+    }
+
+    /// The share of this original that a suspect covers when it is moved, 0 to 1.
+    pub fn covered_by(&self, suspect: &Mesh, motion: &Motion) -> f64 {
+        let moved = motion.of_mesh(suspect);
+        let surface = Surface::new(&moved);
+        let few = self.points.fewer(10 * SCORED / 4);
+        let is_near = |p: &&DVec3| {
+            let nearest = surface.nearest(**p);
+            nearest.is_some_and(|nearest| nearest.distance < FINE * self.diagonal)
+        };
+        few.positions.iter().filter(is_near).count() as f64 / few.positions.len().max(1) as f64
     }
 
     fn scored(&self, points: &Points, motion: Motion) -> Registration {

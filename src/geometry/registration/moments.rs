@@ -1,6 +1,6 @@
 //! Where a whole copy may lie, by moments: second ones for copies that were turned and scaled, fourth ones for any affine map.
 
-use super::Points;
+use super::points::Points;
 use crate::geometry::Motion;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, SymmetricEigen};

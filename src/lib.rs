@@ -64,9 +64,10 @@ pub use scene::SceneError;
 pub use watermark::{
     Advice, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport, Embedding,
     Error, Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
-    NoteReading, NoteReport, NoteSize, RecordError, RecordOptions, Shape, Strength, Surface, Suspect, Unshown, Verdict,
-    Witness, capacity, compare, compare_with_record, decompress, detect, embed, embed_note, extract, extract_many,
-    file_names, inspect, measure, note_capacity, read_note, record, verify,
+    NoteReading, NoteReport, NoteSize, RecordError, RecordOptions, Shape, Strength, Surface,
+    Suspect, Unshown, Verdict, Witness, capacity, compare, compare_with_record, decompress, detect,
+    embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
+    read_note, record, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

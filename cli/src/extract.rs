@@ -17,6 +17,9 @@ pub struct Extract {
     /// the key's use on it, or the answer proves nothing to others
     #[arg(long, value_name = "FILE", conflicts_with = "evidence")]
     original: Option<PathBuf>,
+    /// What `embed --record` wrote, in the stead of the original
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original"])]
+    record: Option<PathBuf>,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -29,6 +32,10 @@ impl Extract {
         let key = self.owner.key()?;
         if let Some(original) = &self.original {
             let comparison = self.suspect.compare(original, &key, &mut clock)?;
+            return self.telling.of_comparison(comparison, clock);
+        }
+        if let Some(record) = &self.record {
+            let comparison = self.suspect.compare_with_record(record, &key, &mut clock)?;
             return self.telling.of_comparison(comparison, clock);
         }
         let extraction = self.suspect.examine(&key, None, &mut clock)?;

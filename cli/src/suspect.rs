@@ -2,12 +2,12 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{load, open, open_suspect};
+use crate::file::{load, load_text, open, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, compare, detect, extract, measure,
-    verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, compare, compare_with_record, detect,
+    extract, measure, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -54,6 +54,18 @@ impl Suspect {
         let original = open(original)?;
         let suspect = open_suspect(&self.input)?;
         Ok(compare(suspect.suspect(clock), original.unwatched(), key)?)
+    }
+
+    /// Reads a model with the record of marking it.
+    pub fn compare_with_record(
+        &self,
+        record: &Path,
+        key: &Key,
+        clock: &mut Clock,
+    ) -> Result<Comparison, Failure> {
+        let record = load_text(record)?;
+        let suspect = open_suspect(&self.input)?;
+        Ok(compare_with_record(suspect.suspect(clock), &record, key)?)
     }
 
     /// The evidence, measured here where the suspect is a model.

@@ -22,6 +22,34 @@ export interface CompareOptions extends CompareMeshOptions {
   files?: Files | undefined;
 }
 
+/** Of a suspect that is read with a record. */
+export interface CompareWithRecordOptions {
+  /** What a suspect that is a `.gltf` names by URI. Default: none. */
+  files?: Files | undefined;
+  /** Whether `lnP` is told where nothing is found too. Default: false. It follows the key: for the key's owner. */
+  details?: boolean | undefined;
+  /** Default: nobody is told. */
+  onProgress?: OnProgress | undefined;
+}
+
+export interface RecordOptions {
+  /** What an original that is a `.gltf` names by URI. Default: none. */
+  originalFiles?: Files | undefined;
+  /** The owner's name, in clear. Default: none. */
+  owner?: string | undefined;
+  /** When the model was marked, in clear. Default: none. */
+  date?: string | undefined;
+}
+
+/** What a record names of an `EmbedReport`: the report itself will do. */
+export interface Marking {
+  tag: string | null;
+  number: number | null;
+  strength: number;
+  hostSha256: string;
+  markedSha256: string;
+}
+
 /** What `compare` says. */
 export interface Comparison {
   /**
@@ -71,3 +99,12 @@ export function compareMesh(
   key: Uint8Array,
   options?: CompareMeshOptions,
 ): Comparison;
+
+/** The same with the record of an embedding in the stead of the original: with about half of the exponent. */
+export function compareWithRecord(suspect: Uint8Array, record: string, key: Uint8Array, options?: CompareWithRecordOptions): Comparison;
+
+/**
+ * The record of an embedding: JSON of some tens of kilobytes, to be kept where the original may be lost. It says to anybody whose and which
+ * files it is of; only the key reads the rest.
+ */
+export function record(original: Uint8Array, report: Marking, key: Uint8Array, options?: RecordOptions): string;

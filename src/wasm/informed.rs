@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::{argument, encoded, files_from, thrown};
-use crate::watermark::{self, Comparison, Error};
+use crate::watermark::{self, Comparison, Error, RecordOptions};
 use crate::{Key, Model, Surface};
 use wasm_bindgen::prelude::*;
 
@@ -53,6 +53,44 @@ pub fn compare_mesh(
     let original = Model::new(original).with_files(&of_original);
     let comparison = watermark::compare(suspect, original, &key_from(key)?).map_err(thrown)?;
     told(comparison, is_for_owner)
+}
+
+/// Reads a suspect with the record of marking it.
+#[wasm_bindgen(js_name = compareWithRecord, skip_typescript)]
+pub fn compare_with_record(
+    suspect: &[u8],
+    record: &str,
+    key: &[u8],
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["files", "details", "onProgress"])?;
+    let is_for_owner = options.is_set("details")?;
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let suspect = Model::new(suspect)
+        .with_files(&files)
+        .with_progress(&mut listener);
+    let comparison = watermark::compare_with_record(suspect, record, &key_from(key)?);
+    told(comparison.map_err(thrown)?, is_for_owner)
+}
+
+/// The record of an embedding.
+#[wasm_bindgen(skip_typescript)]
+pub fn record(
+    original: &[u8],
+    report: JsValue,
+    key: &[u8],
+    options: JsValue,
+) -> Result<String, JsValue> {
+    let options = Options::new(options, &["originalFiles", "owner", "date"])?;
+    let files = files_from(&options.get("originalFiles"))?;
+    let marking = serde_wasm_bindgen::from_value(report)
+        .map_err(|_| argument("report is what `embed` gave"))?;
+    let text = |name: &str| options.get(name).as_string().unwrap_or_default();
+    let named = RecordOptions::default()
+        .with_owner(text("owner"))
+        .with_date(text("date"));
+    let model = Model::new(original).with_files(&files);
+    watermark::record_of(&model, &marking, &key_from(key)?, &named).map_err(thrown)
 }
 
 fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {

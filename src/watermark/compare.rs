@@ -189,7 +189,10 @@ fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
 
 /// Reads without the original, at half of the probability of a false alarm.
 pub(super) fn read_blind(
-    mesh: &Mesh, key: &Key, progress: &mut dyn Progress) -> Result<Blind, Error> {
+    mesh: &Mesh,
+    key: &Key,
+    progress: &mut dyn Progress,
+) -> Result<Blind, Error> {
     let judge = Judge::new(key, None, Input::Model).one_of(2);
     let mut readings = Carrier::ALL.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {

@@ -31,6 +31,8 @@ pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };
 pub use options::{EmbedOptions, Strength};
+#[cfg(all(target_arch = "wasm32", feature = "wasm-informed"))]
+pub(crate) use record::record_of;
 pub use record::{RecordOptions, compare_with_record, record};
 pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,

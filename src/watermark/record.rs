@@ -91,6 +91,17 @@ impl Clear {
     }
 }
 
+/// What a record names of the report of an embedding.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Marking {
+    pub tag: Option<String>,
+    pub number: Option<u64>,
+    pub strength: f64,
+    pub host_sha256: String,
+    pub marked_sha256: String,
+}
+
 /// A record of an embedding, from the original and the report of marking it: JSON of some tens of kilobytes, to be kept where the
 /// original may be lost. It says to anybody whose and which files it is of; only the key reads the rest.
 ///
@@ -102,7 +113,23 @@ pub fn record<'a>(
     key: &Key,
     options: &RecordOptions,
 ) -> Result<String, Error> {
-    let model: Model = original.into();
+    let marking = Marking {
+        tag: report.tag.clone(),
+        number: report.number,
+        strength: report.strength,
+        host_sha256: report.host_sha256.clone(),
+        marked_sha256: report.marked_sha256.clone(),
+    };
+    record_of(&original.into(), &marking, key, options)
+}
+
+/// The same, from what the record needs of the report.
+pub(crate) fn record_of(
+    model: &Model,
+    marking: &Marking,
+    key: &Key,
+    options: &RecordOptions,
+) -> Result<String, Error> {
     let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
     let recorded = with_host(&scene, &options_of_original(), |host| {
         Recorded::new(&Frames::new(host), key)
@@ -114,13 +141,13 @@ pub fn record<'a>(
         kind: KIND.to_owned(),
         version: VERSION,
         tool: concat!("meshmark ", env!("CARGO_PKG_VERSION")).to_owned(),
-        owner: options.owner.clone(),
-        date: options.date.clone(),
-        tag: report.tag.clone(),
-        number: report.number,
-        strength: report.strength,
-        host_sha256: report.host_sha256.clone(),
-        marked_sha256: report.marked_sha256.clone(),
+        owner: options.owner.clone().filter(|owner| !owner.is_empty()),
+        date: options.date.clone().filter(|date| !date.is_empty()),
+        tag: marking.tag.clone(),
+        number: marking.number,
+        strength: marking.strength,
+        host_sha256: marking.host_sha256.clone(),
+        marked_sha256: marking.marked_sha256.clone(),
         key_commitment: hex(&key.commitment()),
     };
     let sealed = STANDARD.encode(key.seal(&plain, &clear.bytes()));
@@ -252,7 +279,10 @@ impl Shape {
         });
         let few = few.part(most.copied());
         let low = few.positions.iter().fold(DVec3::INFINITY, |a, p| a.min(*p));
-        let high = few.positions.iter().fold(DVec3::NEG_INFINITY, |a, p| a.max(*p));
+        let high = few
+            .positions
+            .iter()
+            .fold(DVec3::NEG_INFINITY, |a, p| a.max(*p));
         let unit = ((high - low).max_element() / GRID).max(f64::MIN_POSITIVE);
         let rounded = |p: &DVec3| ((*p - low) / unit).round().to_array().map(|x| x as u16);
         Shape {

@@ -17,9 +17,9 @@ mod points;
 use super::{Motion, Surface, diagonal};
 use crate::mesh::Mesh;
 use features::Look;
-use points::{MIRROR, Points};
 use glam::DVec3;
 use icp::{Freedom, refined};
+use points::{MIRROR, Points};
 use std::cell::OnceCell;
 
 /// Points that candidates are scored on, that they are refined on, and that the last steps are made on.

@@ -45,4 +45,3 @@ impl Points {
 
 /// A mirror.
 pub const MIRROR: DMat3 = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
-

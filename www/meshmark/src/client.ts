@@ -20,7 +20,7 @@ import type {
   ReadOptions,
   Verification,
 } from "./index.js";
-import type { CompareMeshOptions, CompareOptions, Comparison } from "./informed.js";
+import type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "./informed.js";
 import { Remote, type CallOptions } from "./remote.js";
 
 export { MeshmarkError };
@@ -59,6 +59,8 @@ export interface Client {
     key: Uint8Array,
     options?: CompareMeshOptions & CallOptions,
   ): Promise<Comparison>;
+  compareWithRecord(suspect: Uint8Array, record: string, key: Uint8Array, options?: CompareWithRecordOptions & CallOptions): Promise<Comparison>;
+  record(original: Uint8Array, report: Marking, key: Uint8Array, options?: RecordOptions & CallOptions): Promise<string>;
   demoModel(options?: CallOptions): Promise<Uint8Array>;
   version(options?: CallOptions): Promise<string>;
   /** Ends the worker; calls under way, and later ones, reject with code `disposed`. */
@@ -92,6 +94,8 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl 
     capacity: (model, options) => remote.call("capacity", [model], options),
     compare: (suspect, original, key, options) => remote.call("compare", [suspect, original, key], options),
     compareMesh: (positions, triangles, original, key, options) => remote.call("compareMesh", [positions, triangles, original, key], options),
+    compareWithRecord: (suspect, text, key, options) => remote.call("compareWithRecord", [suspect, text, key], options),
+    record: (original, report, key, options) => remote.call("record", [original, report, key], options),
     demoModel: (options) => remote.call("demoModel", [], options),
     version: (options) => remote.call("version", [], options),
     dispose: () => remote.dispose(),

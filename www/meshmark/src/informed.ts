@@ -8,7 +8,7 @@ import { asMeshmarkError, MeshmarkError } from "./error.js";
 import { load, type InitInput, type Loadable } from "./loading.js";
 
 export { MeshmarkError };
-export type { CompareMeshOptions, CompareOptions, Comparison } from "../wasm-informed/informed.js";
+export type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "../wasm-informed/informed.js";
 
 let module: typeof wasm | undefined;
 let starting: Promise<void> | undefined;
@@ -58,3 +58,5 @@ function guarded<N extends Name>(name: N): (typeof wasm)[N] {
 
 export const compare = guarded("compare");
 export const compareMesh = guarded("compareMesh");
+export const compareWithRecord = guarded("compareWithRecord");
+export const record = guarded("record");

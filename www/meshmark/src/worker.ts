@@ -23,11 +23,15 @@ import { answer } from "./remote.js";
 let codecsUrl: string | undefined;
 let informedUrl: string | undefined;
 
-/** The module that reads with the original, once it was asked for. */
-async function informed(): Promise<typeof import("./informed.js")> {
-  const module = await import("./informed.js");
-  await module.init(informedUrl);
-  return module;
+type Informed = typeof import("./informed.js");
+
+/** A function of the module that reads with the original, which is loaded when it is asked for. */
+function withOriginal(name: "compare" | "compareMesh" | "compareWithRecord" | "record") {
+  return async (...args: unknown[]): Promise<unknown> => {
+    const module: Informed = await import("./informed.js");
+    await module.init(informedUrl);
+    return (module[name] as (...args: unknown[]) => unknown)(...args);
+  };
 }
 
 /** A function that reads models: where one is compressed, again with the module that has the codecs. */
@@ -59,8 +63,10 @@ answer(
     decompress: reading(decompress),
     inspect: reading(inspect),
     capacity: reading(capacity),
-    compare: async (...args: Parameters<typeof import("./informed.js").compare>) => (await informed()).compare(...args),
-    compareMesh: async (...args: Parameters<typeof import("./informed.js").compareMesh>) => (await informed()).compareMesh(...args),
+    compare: withOriginal("compare"),
+    compareMesh: withOriginal("compareMesh"),
+    compareWithRecord: withOriginal("compareWithRecord"),
+    record: withOriginal("record"),
     demoModel,
     version,
   },

@@ -40,7 +40,7 @@ impl Options {
     }
 
     /// A choice of yes or no; no where it was left out.
-    #[cfg(feature = "wasm-marks")]
+    #[cfg(any(feature = "wasm-marks", feature = "wasm-informed"))]
     pub fn is_set(&self, name: &str) -> Result<bool, JsValue> {
         let value = self.get(name);
         match value.as_bool() {

@@ -125,7 +125,10 @@ impl<'a> Frames<'a> {
 
     /// What a key has to look for there.
     pub fn with_key(&self, key: &Key) -> Reader<'_> {
-        let lattice = Lattice::of(key);
+        self.with_lattice(Lattice::of(key))
+    }
+
+    fn with_lattice(&self, lattice: Lattice) -> Reader<'_> {
         let mut laid = Vec::new();
         for frame in &self.frames {
             let (candidates, finest) = frame.pitches();
@@ -384,5 +387,68 @@ impl<'a> Evidence<'a> {
         let mut l = vec![0.0; goals.len()];
         conjugate_gradients(apply, precondition, &goals, &mut l, CG_TOLERANCE, CG_STEPS);
         response.ridged(&l)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
+mod tests {
+    use super::*;
+    use crate::geometry::{Bounds, Leeway, Parts, scattered};
+    use crate::mesh::{Admissible, shapes};
+    use crate::progress::ignore;
+
+    /// docs/SECURITY.md, "With the original", 3: responses and charges know no dither, and each window has an address of its own.
+    #[test]
+    fn no_response_depends_on_a_dither() {
+        let mesh = shapes::asteroid(20, 30);
+        let (parts, admissible) = (Parts::new(&mesh), Admissible::default());
+        let leeway = Leeway::new(&mesh, &parts, Bounds::HIDDEN);
+        let host = Host {
+            mesh: &mesh,
+            leeway: &leeway,
+            admissible: &admissible,
+            rms_rel: 0.0004,
+            hidden: true,
+            on_top: false,
+        };
+        let observations: Vec<Observation> = scattered(&mesh, 2000, 1)
+            .iter()
+            .map(|point| Observation {
+                vertices: mesh.triangles[point.triangle as usize],
+                weights: point.weights,
+                direction: point.normal,
+                value: 1e-3 * libm::sin(20.0 * point.position.x),
+                precision: 1e6,
+            })
+            .collect();
+        let frames = Frames::new(&host);
+        let ways = |lattice: Lattice| {
+            let mut ways = Vec::new();
+            let observe = |_: f64| observations.clone();
+            let mut keep = |way: Way| {
+                ways.push(way);
+                false
+            };
+            let reader = frames.with_lattice(lattice);
+            reader.read(&[&observe], &mut ignore, &mut keep).unwrap();
+            ways
+        };
+        let key = |number: u8| Key::from_bytes(&[number; Key::BYTES]).unwrap();
+        let drawn = ways(Lattice::of(&key(1)));
+        let redrawn = ways(Lattice::of(&key(1)).redrawn(&key(2)));
+        assert!(!drawn.is_empty() && drawn.len() == redrawn.len());
+        let charge = |way: &Way| way.ln_num_tests;
+        let total: f64 = drawn.iter().map(|way| libm::exp(-charge(way))).sum();
+        assert!(total <= 1.0 + 1e-9, "the shares add up to {total}");
+        for (a, b) in drawn.iter().zip(&redrawn) {
+            assert_eq!(charge(a), charge(b));
+            let responses = |way: &Way| -> Vec<f64> {
+                way.places.iter().map(|place| place.response).collect()
+            };
+            assert_eq!(responses(a), responses(b));
+            assert!(responses(a).iter().any(|response| *response != 0.0));
+            assert_ne!(a.places, b.places, "nothing was redrawn");
+        }
     }
 }

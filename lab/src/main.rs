@@ -9,6 +9,7 @@ mod crafted;
 mod false_positives;
 mod found;
 mod grid;
+mod informed;
 mod journal;
 mod models;
 mod oracle;
@@ -74,6 +75,9 @@ struct Arguments {
     /// Instead of the grid: plain models whose surface is written otherwise, or has more beside it that is not seen; prints a table.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild"])]
     surface: bool,
+    /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table.
+    #[arg(long, value_name = "STRENGTH", conflicts_with_all = ["full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    informed: Option<String>,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -134,6 +138,17 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.surface {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return surface::table(models, &Seed::new(seed));
+    }
+    if let Some(name) = &arguments.informed {
+        let strength = STRENGTHS.into_iter().find(|(own, _)| own == name);
+        let strength = strength.ok_or_else(|| format!("there is no strength {name}"))?;
+        let (mut models, _) = models::all(arguments.models.as_deref())?;
+        let most = match arguments.quick {
+            true => Size::Quick,
+            false => Size::Full,
+        };
+        models.retain(|model| model.size <= most);
+        return informed::table(&models, strength, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

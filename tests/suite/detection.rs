@@ -111,7 +111,10 @@ fn detection_bound_of_errors_holds_for_random_dithers() {
     }
     for (count, most) in reached.into_iter().zip([-1.0f64, -2.0, -4.0, -6.0]) {
         let expected = libm::exp(most) * trials as f64;
-        assert!(f64::from(count) <= expected, "{count} of {trials} at {most}");
+        assert!(
+            f64::from(count) <= expected,
+            "{count} of {trials} at {most}"
+        );
         assert!(count > 0 || expected < 60.0, "nothing at {most}: no bound");
     }
 }

@@ -46,7 +46,13 @@ fn assert_found(answer: &Comparison, what: &str) {
 #[wasm_bindgen_test(unsupported = test)]
 fn informed_finds_pieces_with_other_triangles() {
     let (original, marked, mesh) = case();
-    let kept = record(&original, &marked.report, &key(1), &RecordOptions::default()).unwrap();
+    let kept = record(
+        &original,
+        &marked.report,
+        &key(1),
+        &RecordOptions::default(),
+    )
+    .unwrap();
     let piece = quantize(&simplify(&crop(&mesh, 0.3, 3), 0.5), 10);
     let piece = to_glb(&similarity(&piece, 4));
     let answer = compare(&piece, &original, &key(1)).unwrap();
@@ -59,7 +65,10 @@ fn informed_finds_pieces_with_other_triangles() {
 #[wasm_bindgen_test(unsupported = test)]
 fn informed_finds_mirrored_and_stretched_copies() {
     let (original, _, mesh) = case();
-    let stretched = mesh.positions.iter().map(|p| *p * DVec3::new(1.5, 1.0, 0.7));
+    let stretched = mesh
+        .positions
+        .iter()
+        .map(|p| *p * DVec3::new(1.5, 1.0, 0.7));
     let stretched = mesh.with_positions(stretched.collect());
     for (name, suspect, is_mirrored) in [
         ("mirrored, remeshed", remesh(&mirrored(&mesh), 0.02), true),
@@ -183,6 +192,12 @@ fn informed_seals_never_change() {
     assert_eq!(key(2).unseal(&sealed, b"clear"), None);
     assert_eq!(sealed.len(), 12 + 6 + 16);
     let hex = |bytes: &[u8]| -> String { bytes.iter().map(|b| format!("{b:02x}")).collect() };
-    assert_eq!(hex(&sealed), "5f6aa12adcb4656c637ccd47150481e43e91c1f7d5d5de6e381b9b0d59c732909880");
-    assert_eq!(hex(&key(1).commitment()), "1fa937316ee6b02f4501280145df1f5a");
+    assert_eq!(
+        hex(&sealed),
+        "5f6aa12adcb4656c637ccd47150481e43e91c1f7d5d5de6e381b9b0d59c732909880"
+    );
+    assert_eq!(
+        hex(&key(1).commitment()),
+        "1fa937316ee6b02f4501280145df1f5a"
+    );
 }

@@ -443,9 +443,8 @@ mod tests {
         assert!(total <= 1.0 + 1e-9, "the shares add up to {total}");
         for (a, b) in drawn.iter().zip(&redrawn) {
             assert_eq!(charge(a), charge(b));
-            let responses = |way: &Way| -> Vec<f64> {
-                way.places.iter().map(|place| place.response).collect()
-            };
+            let responses =
+                |way: &Way| -> Vec<f64> { way.places.iter().map(|place| place.response).collect() };
             assert_eq!(responses(a), responses(b));
             assert!(responses(a).iter().any(|response| *response != 0.0));
             assert_ne!(a.places, b.places, "nothing was redrawn");

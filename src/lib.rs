@@ -19,6 +19,8 @@
 //! # }
 //! ```
 //!
+//! With the original at hand, [`compare`] finds what the key alone does not, and says whether the suspect has the original's shape.
+//!
 //! A suspect may be a [`Surface`] too: positions and triangles, from whatever format.
 //!
 //! A model is the bytes of a `.glb` or a `.gltf`. Where there is more to say of it, a [`Model`] takes the files that it names, and
@@ -60,11 +62,12 @@ pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
-    Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
-    Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
-    NoteReading, NoteReport, NoteSize, Strength, Surface, Suspect, Unshown, Verdict, capacity,
-    decompress, detect, embed, embed_note, extract, extract_many, file_names, inspect, measure,
-    note_capacity, read_note, verify,
+    Advice, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport, Embedding,
+    Error, Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
+    NoteReading, NoteReport, NoteSize, RecordError, RecordOptions, Shape, Strength, Surface,
+    Suspect, Unshown, Verdict, Witness, capacity, compare, compare_with_record, decompress, detect,
+    embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
+    read_note, record, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

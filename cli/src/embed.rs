@@ -2,13 +2,13 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::open;
+use crate::file::{open, store};
 use crate::output::Output;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
 use clap::Args;
-use meshmark::{Carrier, EmbedOptions, Strength, embed};
+use meshmark::{Carrier, EmbedOptions, RecordOptions, Strength, embed, record};
 use std::path::PathBuf;
 
 /// Mark a model and read the mark back
@@ -34,6 +34,13 @@ pub struct Embed {
     /// Comma-separated
     #[arg(long, value_delimiter = ',', default_value = "solid,ring", value_parser = carrier)]
     carriers: Vec<Carrier>,
+    /// Write NAME.meshmark.json beside the marked model too: a record of some tens of kilobytes, with which `extract --record` finds most of
+    /// what it finds with the original
+    #[arg(long)]
+    record: bool,
+    /// A date that the record is to name, in clear
+    #[arg(long, value_name = "DATE", requires = "record")]
+    date: Option<String>,
 }
 
 impl Embed {
@@ -52,8 +59,15 @@ impl Embed {
         let stored = self
             .output
             .store(&self.input, &host, &marked.model, &marked.files)?;
-        marked.report.host_sha256 = host.sha256;
+        marked.report.host_sha256.clone_from(&host.sha256);
         marked.report.marked_sha256.clone_from(&stored.sha256);
+        if self.record {
+            let options = RecordOptions::default()
+                .with_owner(self.owner.name().unwrap_or_default())
+                .with_date(self.date.unwrap_or_default());
+            let text = record(host.unwatched(), &marked.report, &key, &options)?;
+            store(&self.output.record(&self.input), text.as_bytes())?;
+        }
         Ok(Report::stored(&marked.report, &stored, clock)?.with_fragile(marked.report.is_fragile))
     }
 }

@@ -6,12 +6,20 @@ use crate::owner::Owner;
 use crate::report::Report;
 use crate::suspect::{Suspect, Telling};
 use clap::Args;
+use std::path::PathBuf;
 
 /// Read the mark of a key from a model, or from measured evidence
 #[derive(Args)]
 pub struct Extract {
     #[command(flatten)]
     suspect: Suspect,
+    /// The model as it was before it was marked: with it a copy is found that has lost what INPUT alone is read by. It has to be older than
+    /// the key's use on it, or the answer proves nothing to others
+    #[arg(long, value_name = "FILE", conflicts_with = "evidence")]
+    original: Option<PathBuf>,
+    /// What `embed --record` wrote, in the stead of the original
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original"])]
+    record: Option<PathBuf>,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -22,6 +30,14 @@ impl Extract {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let key = self.owner.key()?;
+        if let Some(original) = &self.original {
+            let comparison = self.suspect.compare(original, &key, &mut clock)?;
+            return self.telling.of_comparison(comparison, clock);
+        }
+        if let Some(record) = &self.record {
+            let comparison = self.suspect.compare_with_record(record, &key, &mut clock)?;
+            return self.telling.of_comparison(comparison, clock);
+        }
         let extraction = self.suspect.examine(&key, None, &mut clock)?;
         self.telling.of(extraction, clock)
     }

@@ -38,6 +38,11 @@ impl Opened {
             .with_progress(clock)
     }
 
+    /// To work on.
+    pub fn unwatched(&self) -> Model<'_> {
+        Model::new(&self.bytes).with_files(&self.files)
+    }
+
     /// Takes the compression out of it.
     pub fn decompress(&mut self) -> Result<(), Failure> {
         let (bytes, files) = decompress(Model::new(&self.bytes).with_files(&self.files))?;

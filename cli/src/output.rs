@@ -54,6 +54,11 @@ impl Output {
         }
     }
 
+    /// Where the record of the marked model goes: beside it, by its name.
+    pub fn record(&self, input: &Path) -> PathBuf {
+        self.model(input).with_extension("meshmark.json")
+    }
+
     /// Writes a changed model with all that it names: `changed` files anew, the others as they are beside the input.
     pub fn store(
         &self,

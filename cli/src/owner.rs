@@ -24,6 +24,11 @@ pub struct Owner {
 }
 
 impl Owner {
+    /// The owner's name, where it was given.
+    pub fn name(&self) -> Option<&str> {
+        self.owner.as_deref()
+    }
+
     pub fn key(&self) -> Result<Key, Failure> {
         let key = match (&self.key_file, &self.owner) {
             (Some(file), _) => Key::from_bytes(&load(file)?),

@@ -2,11 +2,14 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{load, open_suspect};
+use crate::file::{load, load_text, open, open_suspect};
 use crate::report::Report;
 use clap::Args;
-use meshmark::{Evidence, Extraction, Input, Key, Payload, detect, extract, measure, verify};
-use std::path::PathBuf;
+use meshmark::{
+    Comparison, Evidence, Extraction, Input, Key, Payload, compare, compare_with_record, detect,
+    extract, measure, verify,
+};
+use std::path::{Path, PathBuf};
 
 /// What is read.
 #[derive(Args)]
@@ -41,6 +44,30 @@ impl Suspect {
         })
     }
 
+    /// Reads a model with its original at hand.
+    pub fn compare(
+        &self,
+        original: &Path,
+        key: &Key,
+        clock: &mut Clock,
+    ) -> Result<Comparison, Failure> {
+        let original = open(original)?;
+        let suspect = open_suspect(&self.input)?;
+        Ok(compare(suspect.suspect(clock), original.unwatched(), key)?)
+    }
+
+    /// Reads a model with the record of marking it.
+    pub fn compare_with_record(
+        &self,
+        record: &Path,
+        key: &Key,
+        clock: &mut Clock,
+    ) -> Result<Comparison, Failure> {
+        let record = load_text(record)?;
+        let suspect = open_suspect(&self.input)?;
+        Ok(compare_with_record(suspect.suspect(clock), &record, key)?)
+    }
+
     /// The evidence, measured here where the suspect is a model.
     pub fn measured(&self, clock: &mut Clock) -> Result<(Evidence, Input), Failure> {
         if self.evidence {
@@ -69,6 +96,16 @@ impl Telling {
         let told = match self.details {
             true => extraction.with_details(),
             false => extraction,
+        };
+        Report::judged(&told, verdict, clock)
+    }
+
+    /// The same of a reading with the original.
+    pub fn of_comparison(&self, comparison: Comparison, clock: Clock) -> Result<Report, Failure> {
+        let verdict = comparison.verdict;
+        let told = match self.details {
+            true => comparison.with_details(),
+            false => comparison,
         };
         Report::judged(&told, verdict, clock)
     }

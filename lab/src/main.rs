@@ -10,6 +10,7 @@ mod crafted;
 mod false_positives;
 mod found;
 mod grid;
+mod informed;
 mod journal;
 mod models;
 mod oracle;
@@ -78,6 +79,9 @@ struct Arguments {
     /// Instead of the grid: what people who have no key learn from marked plain models, and do to them; prints tables.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     adversary: bool,
+    /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table.
+    #[arg(long, value_name = "STRENGTH", conflicts_with_all = ["full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    informed: Option<String>,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -142,6 +146,17 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.adversary {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return adversary::table(models, &Seed::new(seed));
+    }
+    if let Some(name) = &arguments.informed {
+        let strength = STRENGTHS.into_iter().find(|(own, _)| own == name);
+        let strength = strength.ok_or_else(|| format!("there is no strength {name}"))?;
+        let (mut models, _) = models::all(arguments.models.as_deref())?;
+        let most = match arguments.quick {
+            true => Size::Quick,
+            false => Size::Full,
+        };
+        models.retain(|model| model.size <= most);
+        return informed::table(&models, strength, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -14,6 +14,7 @@ pub mod solid;
 pub use error::{CarrierError, StoredError};
 pub(crate) use error::{possible, take};
 pub use reading::{Hypothesis, Reading};
+pub use solid::{Frames, Place, Recorded, Seen, Way}; // reading with the original, which is SOLID's alone
 
 use crate::code::Codeword;
 use crate::geometry::{Leeway, Piece};

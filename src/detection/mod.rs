@@ -63,3 +63,48 @@ impl Statistic {
 pub fn union(ln_p: f64, ln_num_tests: f64) -> f64 {
     (ln_p + ln_num_tests).min(0.0)
 }
+
+/// `ln P(sum m e >= T)` for errors e, each uniform from -1/2 to 1/2 and independent of the others, and numbers m that do not depend on them:
+/// Chernoff's bound, `min over l of sum ln(sinh(x) / x) - l T` with `x = l m / 2`. From pairs of (m, e); an error beyond its range
+/// counts as the nearest in it, and what is no number as none.
+pub fn ln_p_of_errors(terms: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let terms = terms
+        .filter(|(m, e)| m.is_finite() && e.is_finite())
+        .map(|(m, e)| (m, e.clamp(-0.5, 0.5)));
+    let (sum, square) = terms.clone().fold((0.0, 0.0), |(sum, square), (m, e)| {
+        (sum + m * e, square + m * m)
+    });
+    if !(sum > 0.0 && square.is_normal()) {
+        return 0.0;
+    }
+    // `ln(sinh(x) / x) <= x^2 / 6` gives a bound in one step, and where to begin.
+    let simple = -6.0 * sum * sum / square;
+    if simple > -1.0 {
+        return simple;
+    }
+    let at = |l: f64| {
+        let parts = terms.clone().map(|(m, _)| ln_sinhc(0.5 * l * m.abs()));
+        parts.sum::<f64>() - l * sum
+    };
+    // Every l gives a bound; the function is convex in it.
+    let (mut low, mut high) = (12.0 * sum / square, 1200.0 * sum / square);
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    for _ in 0..24 {
+        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        if at(a) < at(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    simple.min(at(0.5 * (low + high)))
+}
+
+/// `ln(sinh(x) / x)` for x that is not negative.
+fn ln_sinhc(x: f64) -> f64 {
+    if x < 1e-3 {
+        x * x / 6.0
+    } else {
+        x + libm::log1p(-libm::exp(-2.0 * x)) - libm::log(2.0 * x)
+    }
+}

@@ -99,6 +99,15 @@ impl<'a> Surface<'a> {
         self.grow(range.start + half..range.end, centres);
     }
 
+    /// The point nearest to `from`, and the unit normal of its triangle; `None` for a mesh without area.
+    pub fn foot(&self, from: DVec3) -> Option<(DVec3, DVec3)> {
+        let nearest = self.nearest(from)?;
+        let [a, b, c] = self
+            .mesh
+            .corners(self.mesh.triangles[nearest.triangle as usize]);
+        Some((nearest.point, (b - a).cross(c - a).normalize_or_zero()))
+    }
+
     /// The point nearest to `from`; `None` for a mesh without area.
     pub fn nearest(&self, from: DVec3) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;

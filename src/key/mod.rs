@@ -3,6 +3,8 @@
 //!
 //! docs/FORMAT.md fixes every parameter here: a change would orphan all marks made before it.
 
+mod seal;
+
 use argon2::{Algorithm, Argon2, Params, Version};
 use hkdf::Hkdf;
 use sha2::{Digest, Sha256};

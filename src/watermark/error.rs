@@ -31,6 +31,40 @@ impl std::fmt::Display for Advice {
     }
 }
 
+/// Why a text is no record that can be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// Something else.
+    #[error("this is no record: one is the JSON that `embed` wrote beside the marked file")]
+    NotARecord,
+    /// Of a later version.
+    #[error("the record has version {0}, and this program reads version 1: use a newer one")]
+    Version(u32),
+    /// Of another key.
+    #[error(
+        "the record was made with another key: check the owner's name and the passphrase; with the original no record is needed"
+    )]
+    OtherKey,
+    /// Changed, or cut short.
+    #[error(
+        "the record is not as it was written, in what is sealed or in what is in clear: use another copy of it, or the original"
+    )]
+    Damaged,
+}
+
+impl RecordError {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            RecordError::NotARecord => "record.not-a-record",
+            RecordError::Version(_) => "record.version",
+            RecordError::OtherKey => "record.other-key",
+            RecordError::Damaged => "record.damaged",
+        }
+    }
+}
+
 /// Why nothing was embedded, measured or read. "No mark found" is a result, not an error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -56,6 +90,9 @@ pub enum Error {
     /// The evidence cannot be read.
     #[error(transparent)]
     Evidence(#[from] EvidenceError),
+    /// The record cannot be read.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// A strength outside its range.
     #[error(
         "strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}"
@@ -115,6 +152,7 @@ impl Error {
             Error::Payload(error) => error.code(),
             Error::Text(error) => error.code(),
             Error::Evidence(error) => error.code(),
+            Error::Record(error) => error.code(),
             Error::Strength(_) => "options.strength",
             Error::MaxMovement(_) => "options.max-movement",
             Error::NoCarrier => "options.no-carrier",

@@ -1,6 +1,7 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
 mod capacity;
+mod compare;
 mod displace;
 mod embed;
 mod error;
@@ -13,13 +14,16 @@ mod model;
 mod note;
 mod options;
 mod read_back;
+mod record;
 mod report;
 mod suspect;
 mod unshown;
+mod weigh;
 
 pub use capacity::{Capacity, Holds, capacity};
+pub use compare::compare;
 pub use embed::{Embedding, embed};
-pub use error::{Advice, Error};
+pub use error::{Advice, Error, RecordError};
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
@@ -27,8 +31,11 @@ pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };
 pub use options::{EmbedOptions, Strength};
+#[cfg(all(target_arch = "wasm32", feature = "wasm-informed"))]
+pub(crate) use record::record_of;
+pub use record::{RecordOptions, compare_with_record, record};
 pub use report::{
-    CarrierReading, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level, Unshown,
-    Verdict,
+    CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
+    Shape, Unshown, Verdict, Witness,
 };
 pub use suspect::{Surface, Suspect};

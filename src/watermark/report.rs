@@ -163,6 +163,96 @@ impl Serialize for Extraction {
     }
 }
 
+/// Whether a suspect is of an original's shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Shape {
+    /// Most of the suspect lies on the original: it is a copy of it, or of a piece of it, whoever marked it.
+    Same,
+    /// It lies nowhere on the original, as a whole.
+    Other,
+}
+
+/// What told of a mark where the original was at hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Witness {
+    /// How the suspect's surface differs from the original's.
+    Surface,
+    /// Where the vertices went that it kept.
+    Vertices,
+    /// The suspect alone, as [`detect`](crate::detect) reads it.
+    Blind,
+}
+
+/// A suspect that was read with the original at hand.
+///
+/// Numbers about the shape follow no key where the mark is not found; `lnP` does, and is in the JSON as [`Extraction`]'s details are.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// The answer about the mark. Never [`Verdict::CannotCheck`].
+    pub verdict: Verdict,
+    /// The answer about the shape.
+    pub shape: Shape,
+    /// Both in words.
+    pub sentence: &'static str,
+    /// The payload as a tag, where it is found.
+    pub tag: Option<String>,
+    /// The payload as a number, where it is found.
+    pub number: Option<u64>,
+    /// What told of the mark, where it is found or present.
+    pub witness: Option<Witness>,
+    /// The share of the suspect's surface that lies on the original, 0 to 1.
+    pub near: f64,
+    /// The share of the original's surface that the suspect shows, 0 to 1.
+    pub covered: f64,
+    /// Whether the suspect is a mirror image.
+    pub is_mirrored: bool,
+    /// What takes the suspect onto the original: three columns of a linear map, and a shift in the original's scene units. `None` where it lies
+    /// nowhere.
+    pub motion: Option<[[f64; 3]; 4]>,
+    pub(super) ln_p: f64,
+    pub(super) shows_ln_p: bool,
+}
+
+impl Comparison {
+    /// Natural logarithm of the bound of the false-positive probability, every choice charged; at most 0. It follows the key: see
+    /// [`Extraction::details`].
+    pub fn ln_p(&self) -> f64 {
+        self.ln_p
+    }
+
+    /// The same comparison, whose JSON has `lnP` whatever the verdict is.
+    pub fn with_details(mut self) -> Comparison {
+        self.shows_ln_p = true;
+        self
+    }
+}
+
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let num_details = usize::from(self.shows_ln_p);
+        let mut fields = serializer.serialize_struct("Comparison", 10 + num_details)?;
+        fields.serialize_field("verdict", &self.verdict)?;
+        fields.serialize_field("shape", &self.shape)?;
+        fields.serialize_field("sentence", &self.sentence)?;
+        fields.serialize_field("tag", &self.tag)?;
+        fields.serialize_field("number", &self.number)?;
+        fields.serialize_field("witness", &self.witness)?;
+        fields.serialize_field("near", &self.near)?;
+        fields.serialize_field("covered", &self.covered)?;
+        fields.serialize_field("isMirrored", &self.is_mirrored)?;
+        fields.serialize_field("motion", &self.motion)?;
+        if self.shows_ln_p {
+            fields.serialize_field("lnP", &self.ln_p)?;
+        }
+        fields.end()
+    }
+}
+
 /// What an embedding did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]

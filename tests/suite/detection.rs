@@ -1,7 +1,7 @@
 //! The bound: what it is, that it holds, and that it survives extreme numbers.
 
 use crate::support::fixtures::key;
-use meshmark::internals::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, union};
+use meshmark::internals::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, ln_p_of_errors, union};
 use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -92,4 +92,42 @@ fn detection_bound_holds_for_random_dithers() {
         values.iter().any(|&ln_p| ln_p < -2.0),
         "the bound is of the right order, not idle"
     );
+}
+
+/// Responses of very different sizes, and errors as the dithers of a key that marked nothing give them.
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_bound_of_errors_holds_for_random_dithers() {
+    let prf = key(9).prf("errors");
+    let uniform = |address: u64| (prf.at(address).0 >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+    let responses: Vec<f64> = (0..60).map(|i| libm::exp(-0.1 * f64::from(i))).collect();
+    let (trials, mut reached) = (20_000u64, [0u32; 4]);
+    for trial in 0..trials {
+        let errors = (0..60).map(|i| uniform(trial << 8 | i));
+        let terms: Vec<(f64, f64)> = responses.iter().copied().zip(errors).collect();
+        let ln_p = ln_p_of_errors(terms.iter().copied());
+        for (count, most) in reached.iter_mut().zip([-1.0, -2.0, -4.0, -6.0]) {
+            *count += u32::from(ln_p <= most);
+        }
+    }
+    for (count, most) in reached.into_iter().zip([-1.0f64, -2.0, -4.0, -6.0]) {
+        let expected = libm::exp(most) * trials as f64;
+        assert!(
+            f64::from(count) <= expected,
+            "{count} of {trials} at {most}"
+        );
+        assert!(count > 0 || expected < 60.0, "nothing at {most}: no bound");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_errors_that_are_none_say_nothing() {
+    let none: [(f64, f64); 0] = [];
+    assert_eq!(ln_p_of_errors(none.into_iter()), 0.0);
+    let odd = [(f64::NAN, 0.5), (1.0, f64::NAN), (f64::INFINITY, 0.5)];
+    assert_eq!(ln_p_of_errors(odd.into_iter()), 0.0);
+    let held = ln_p_of_errors([(1.0, 9.0); 8].into_iter());
+    assert_eq!(held, ln_p_of_errors([(1.0, 0.5); 8].into_iter()));
+    assert!(ln_p_of_errors([(1.0, -0.4); 8].into_iter()) == 0.0);
+    let sure = ln_p_of_errors([(1.0, 0.49); 100].into_iter());
+    assert!(sure < -200.0, "{sure}");
 }

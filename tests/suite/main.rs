@@ -17,6 +17,7 @@ mod examples;
 mod floors;
 mod geometry;
 mod golden;
+mod informed;
 mod key;
 mod layers;
 mod leeway;

@@ -24,7 +24,7 @@ const ROUNDS: usize = 8;
 const LEAST_WEIGHT: f64 = 0.02;
 /// No vertex moves more than so many times the RMS limit, and less where its freedom is less than is typical. The second is
 /// for models in which a few vertices hold up large parts.
-const CLAMPS: [f64; 2] = [3.0, 6.0];
+pub(super) const CLAMPS: [f64; 2] = [3.0, 6.0];
 
 /// Windows that a vertex can serve: it has three freedoms. Of 28 models with few vertices none held more than 0.7 nats for a vertex, so a
 /// mark of so many nats needs as many vertices at least.

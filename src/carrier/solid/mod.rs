@@ -24,6 +24,8 @@
 //! | `stretch` | detecting: a scale along one axis |
 //! | `field`, `scan` | detecting: turns, where the frame does not determine its axes |
 //! | `refine` | detecting: where exactly the lattice lies |
+//! | `informed` | detecting with the original: what a suspect shows of what the embedder must have done |
+//! | `recorded` | the same with what a record keeps of the original |
 //! | `reading` | detecting: what the chosen ways say, and what they are charged |
 //! | `measurement` | all surfaces of a suspect, as they are kept and read |
 //!
@@ -35,6 +37,7 @@ mod field;
 mod frame;
 mod freedom;
 mod grid;
+mod informed;
 mod lattice;
 mod lists;
 mod measurement;
@@ -44,6 +47,7 @@ mod pitch;
 mod problem;
 mod quantizer;
 mod reading;
+mod recorded;
 mod refine;
 mod scan;
 mod search;
@@ -55,7 +59,9 @@ mod surfaces;
 mod window;
 
 pub use frame::has_axes;
+pub use informed::{Frames, Place, Seen, Way};
 pub use measurement::{Measurement, Suspect, piece};
 pub use objects::embed;
+pub use recorded::Recorded;
 pub use surface::Surface;
 pub use surfaces::Surfaces;

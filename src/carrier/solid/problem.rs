@@ -247,6 +247,10 @@ impl<'a> Problem<'a> {
         sums
     }
 
+    pub fn num_vertices(&self) -> usize {
+        self.positions.len()
+    }
+
     pub fn mean_diagonal(&self) -> f64 {
         self.diagonal.iter().sum::<f64>() / self.diagonal.len() as f64
     }
@@ -302,20 +306,64 @@ impl<'a> Problem<'a> {
         solution
     }
 
+    /// The matrix of the dual times a number for each window: what the windows are to be moved by for these multipliers.
+    pub fn ridged(&self, l: &[f64], weights: &[f64], mu: f64) -> Vec<f64> {
+        let parts = self.parts(l);
+        let row = |(window, inner): (usize, f64)| {
+            let outer: f64 = self.coupling[window]
+                .iter()
+                .zip(&parts)
+                .map(|(c, part)| c * part)
+                .sum();
+            inner - outer + mu * l[window] / weights[window]
+        };
+        self.inner(l).into_iter().enumerate().map(row).collect()
+    }
+
+    /// The displacements of all vertices by the windows' multipliers, whatever that does to the moments.
+    pub fn spread(&self, l: &[f64]) -> Vec<DVec3> {
+        let displacement = |vertex: usize| {
+            let pushes = self.pushes.get(vertex).iter();
+            let sum: DVec3 = pushes
+                .map(|&(row, push)| DVec3::from_array(push.map(f64::from)) * l[row as usize])
+                .sum();
+            sum * self.freedom[vertex]
+        };
+        (0..self.positions.len()).map(displacement).collect()
+    }
+
+    /// The transposed map: what a number for each vertex and axis gives each window.
+    pub fn gathered(&self, at: &[DVec3]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.coupling.len()];
+        for (vertex, at) in at.iter().enumerate() {
+            let at = *at * self.freedom[vertex];
+            for &(row, push) in self.pushes.get(vertex) {
+                sums[row as usize] += DVec3::from_array(push.map(f64::from)).dot(at);
+            }
+        }
+        sums
+    }
+
+    /// For each window, the sum over vertices of a number times the square of what a unit of its multiplier moves them by.
+    pub fn squares(&self, at: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.coupling.len()];
+        for (vertex, at) in at.iter().enumerate() {
+            let at = at * self.freedom[vertex] * self.freedom[vertex];
+            for &(row, push) in self.pushes.get(vertex) {
+                sums[row as usize] += DVec3::from_array(push.map(f64::from)).length_squared() * at;
+            }
+        }
+        sums
+    }
+
+    /// Each window's inner product with itself.
+    pub fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
     /// Conjugate gradients on the dual, preconditioned by the diagonal, from the multipliers at hand.
     fn relax(&self, goals: &[f64], weights: &[f64], mu: f64, multipliers: &mut [f64]) {
-        let apply = |l: &[f64]| -> Vec<f64> {
-            let parts = self.parts(l);
-            let row = |(window, inner): (usize, f64)| {
-                let outer: f64 = self.coupling[window]
-                    .iter()
-                    .zip(&parts)
-                    .map(|(c, part)| c * part)
-                    .sum();
-                inner - outer + mu * l[window] / weights[window]
-            };
-            self.inner(l).into_iter().enumerate().map(row).collect()
-        };
+        let apply = |l: &[f64]| self.ridged(l, weights, mu);
         let precondition = |r: &[f64]| -> Vec<f64> {
             r.iter()
                 .zip(self.diagonal.iter().zip(weights))

@@ -20,6 +20,7 @@ import type {
   ReadOptions,
   Verification,
 } from "./index.js";
+import type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "./informed.js";
 import { Remote, type CallOptions } from "./remote.js";
 
 export { MeshmarkError };
@@ -32,6 +33,8 @@ export interface ClientOptions {
   wasmUrl?: string | URL | undefined;
   /** Default: the module of this package for compressed models. It is fetched when one comes. */
   codecsUrl?: string | URL | undefined;
+  /** Default: the module of this package that reads with the original. It is fetched when it is asked for. */
+  informedUrl?: string | URL | undefined;
 }
 
 /** The functions of `meshmark` with the same arguments; a `signal` among their options ends a call. They reject with `MeshmarkError`. */
@@ -49,6 +52,16 @@ export interface Client {
   decompress(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Decompressed>;
   inspect(model: Uint8Array, options?: InspectOptions & CallOptions): Promise<Inspection>;
   capacity(model: Uint8Array, options?: MeasureOptions & CallOptions): Promise<Capacity>;
+  compare(suspect: Uint8Array, original: Uint8Array, key: Uint8Array, options?: CompareOptions & CallOptions): Promise<Comparison>;
+  compareMesh(
+    positions: Float64Array,
+    triangles: Uint32Array,
+    original: Uint8Array,
+    key: Uint8Array,
+    options?: CompareMeshOptions & CallOptions,
+  ): Promise<Comparison>;
+  compareWithRecord(suspect: Uint8Array, record: string, key: Uint8Array, options?: CompareWithRecordOptions & CallOptions): Promise<Comparison>;
+  record(original: Uint8Array, report: Marking, key: Uint8Array, options?: RecordOptions & CallOptions): Promise<string>;
   demoModel(options?: CallOptions): Promise<Uint8Array>;
   version(options?: CallOptions): Promise<string>;
   /** Ends the worker; calls under way, and later ones, reject with code `disposed`. */
@@ -61,8 +74,12 @@ export interface Client {
  * @throws MeshmarkError `worker.failed` where no worker can be started (Node has none), `init.failed` where the module
  * cannot be loaded
  */
-export async function createClient({ workerUrl, wasmUrl, codecsUrl }: ClientOptions = {}): Promise<Client> {
-  const remote = new Remote(() => startWorker(workerUrl), { wasmUrl: absolute(wasmUrl), codecsUrl: absolute(codecsUrl) });
+export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl }: ClientOptions = {}): Promise<Client> {
+  const remote = new Remote(() => startWorker(workerUrl), {
+    wasmUrl: absolute(wasmUrl),
+    codecsUrl: absolute(codecsUrl),
+    informedUrl: absolute(informedUrl),
+  });
   const client: Client = {
     deriveKey: (owner, passphrase, options) => remote.call("deriveKey", [owner, passphrase], options),
     workKey: (key, title, options) => remote.call("workKey", [key, title], options),
@@ -77,6 +94,10 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl }: ClientOpti
     decompress: (model, options) => remote.call("decompress", [model], options),
     inspect: (model, options) => remote.call("inspect", [model], options),
     capacity: (model, options) => remote.call("capacity", [model], options),
+    compare: (suspect, original, key, options) => remote.call("compare", [suspect, original, key], options),
+    compareMesh: (positions, triangles, original, key, options) => remote.call("compareMesh", [positions, triangles, original, key], options),
+    compareWithRecord: (suspect, text, key, options) => remote.call("compareWithRecord", [suspect, text, key], options),
+    record: (original, report, key, options) => remote.call("record", [original, report, key], options),
     demoModel: (options) => remote.call("demoModel", [], options),
     version: (options) => remote.call("version", [], options),
     dispose: () => remote.dispose(),

@@ -5,6 +5,7 @@
  */
 import * as wasm from "../wasm/meshmark.js";
 import { asMeshmarkError, MeshmarkError } from "./error.js";
+import { load, type InitInput, type Loadable } from "./loading.js";
 
 export { MeshmarkError };
 export type {
@@ -37,11 +38,9 @@ export type {
   Verification,
 } from "../wasm/meshmark.js";
 
-/** Where the module can come from: an address, a response, its bytes, or the compiled module. */
-export type InitInput = string | URL | Request | Response | BufferSource | WebAssembly.Module;
+export type { InitInput };
 
-/** What wasm-bindgen exports beside the functions that the types declare. */
-type Module = typeof wasm & { default(options: { module_or_path: InitInput }): Promise<unknown> };
+type Module = typeof wasm & Loadable;
 
 /** The functions of the module that answers: the first one, or the one with the codecs once that is there. */
 let current: typeof wasm = wasm;
@@ -94,22 +93,6 @@ async function startCodecs(input: InitInput = new URL("../wasm-codecs/codecs_bg.
   await load(codecs, input);
   current = codecs;
   started = true;
-}
-
-async function load(module: Module, input: InitInput): Promise<void> {
-  await module.default({ module_or_path: isFileUrl(input) ? await readFile(input) : input });
-}
-
-function isFileUrl(input: InitInput): input is string | URL {
-  return (typeof input === "string" || input instanceof URL) && String(input).startsWith("file:");
-}
-
-/** Node's `fetch` knows no `file:` URLs. Asked for by name at run time, so that bundlers for browsers see no import. */
-async function readFile(url: string | URL): Promise<BufferSource> {
-  const { process } = globalThis as unknown as {
-    process: { getBuiltinModule(id: "node:fs/promises"): { readFile(url: URL): Promise<Uint8Array<ArrayBuffer>> } };
-  };
-  return process.getBuiltinModule("node:fs/promises").readFile(new URL(url));
 }
 
 type Name = Exclude<keyof typeof wasm, "default" | "initSync">;

@@ -22,6 +22,18 @@ import {
 import { answer } from "./remote.js";
 
 let codecsUrl: string | undefined;
+let informedUrl: string | undefined;
+
+type Informed = typeof import("./informed.js");
+
+/** A function of the module that reads with the original, which is loaded when it is asked for. */
+function withOriginal(name: "compare" | "compareMesh" | "compareWithRecord" | "record") {
+  return async (...args: unknown[]): Promise<unknown> => {
+    const module: Informed = await import("./informed.js");
+    await module.init(informedUrl);
+    return (module[name] as (...args: unknown[]) => unknown)(...args);
+  };
+}
 
 /** A function that reads models: where one is compressed, again with the module that has the codecs. */
 function reading<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
@@ -53,11 +65,16 @@ answer(
     decompress: reading(decompress),
     inspect: reading(inspect),
     capacity: reading(capacity),
+    compare: withOriginal("compare"),
+    compareMesh: withOriginal("compareMesh"),
+    compareWithRecord: withOriginal("compareWithRecord"),
+    record: withOriginal("record"),
     demoModel,
     version,
   },
   (setup) => {
     codecsUrl = setup?.["codecsUrl"];
+    informedUrl = setup?.["informedUrl"];
     return init(setup?.["wasmUrl"]);
   },
 );

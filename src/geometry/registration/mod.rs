@@ -1,0 +1,284 @@
+//! Registration: how a suspect lies on an original, whole or a piece of it, turned, scaled, sheared or mirrored. Knows no key.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `moments` | where a whole copy may lie |
+//! | `points` | what stands for a suspect |
+//! | `features` | where a piece may lie |
+//! | `icp` | from nearly right to right |
+//!
+//! Points of the suspect are held against the original, and not the other way round: so it does not matter how much was cut off.
+
+mod features;
+mod icp;
+mod moments;
+mod points;
+
+use super::{Motion, Surface, diagonal};
+use crate::mesh::Mesh;
+use features::Look;
+use glam::DVec3;
+use icp::{Freedom, refined};
+use points::{MIRROR, Points};
+use std::cell::OnceCell;
+
+/// Points that candidates are scored on, that they are refined on, and that the last steps are made on.
+const SCORED: usize = 400;
+const REFINED: usize = 700;
+const LAST: usize = 6000;
+/// Points that features are taken from.
+const CLOUD: usize = 30_000;
+/// As shares of the diagonal: near enough for a candidate, and for a registration.
+const COARSE: f64 = 0.03;
+const FINE: f64 = 0.006;
+/// Near enough to be this side of a symmetric shape and not the other.
+const EXACT: f64 = 0.0015;
+/// Candidates that are refined.
+const FOLLOWED: usize = 5;
+/// A share of near points with which nothing more is looked for; whole copies, and pieces.
+const CLEAR: f64 = 0.85;
+/// Hypotheses that are kept, and how much less near than the best they may be.
+const KEPT: usize = 3;
+const NEARLY: f64 = 0.12;
+/// What is less near than this lies on no original.
+pub const LEAST_NEAR: f64 = 0.6;
+
+/// An original that suspects are held against.
+pub struct Original<'a> {
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// The same in a tree.
+    pub surface: Surface<'a>,
+    /// The diagonal of its box.
+    pub diagonal: f64,
+    points: Points,
+    looks: OnceCell<Vec<Look>>,
+}
+
+/// Where a suspect is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Where it is, and where its moments lead: for whole copies, mirrored or not, and affine images of them.
+    Quick,
+    /// Where what the surface looks like leads: for pieces.
+    Pieces,
+    /// The same for mirror images of pieces.
+    Mirrored,
+}
+
+impl Search {
+    /// Every search, the quickest first.
+    pub const ALL: [Search; 3] = [Search::Quick, Search::Pieces, Search::Mirrored];
+}
+
+/// How a suspect may lie on an original.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Registration {
+    /// Takes the suspect onto the original.
+    pub motion: Motion,
+    /// The share of the suspect's surface that lies on the original then, normals agreeing: 0 to 1.
+    pub near: f64,
+    /// The same, nearer: what tells the sides of a symmetric shape.
+    pub exact: f64,
+}
+
+impl Registration {
+    fn score(&self) -> f64 {
+        self.near + 0.2 * self.exact
+    }
+}
+
+impl<'a> Original<'a> {
+    /// Prepares an original.
+    pub fn new(mesh: &'a Mesh) -> Original<'a> {
+        Original {
+            mesh,
+            surface: Surface::new(mesh),
+            diagonal: diagonal(&mesh.positions),
+            points: Points::of(mesh, LAST, 1),
+            looks: OnceCell::new(),
+        }
+    }
+
+    /// What it looks like, for pieces: made when it is needed.
+    fn looks(&self) -> &[Look] {
+        self.looks.get_or_init(|| {
+            let cloud = Points::of(self.mesh, CLOUD, 2);
+            features::looks_of_original(&cloud, self.mesh.area())
+        })
+    }
+
+    /// The ways in which a suspect may lie on this original, likeliest first. They depend on the two surfaces alone.
+    pub fn registrations(&self, suspect: &Mesh, search: Search) -> Vec<Registration> {
+        let points = Points::of(suspect, LAST, 3);
+        if points.positions.len() < LAST / 2 {
+            return Vec::new();
+        }
+        let mut found = Found::new(self, &points);
+        if search == Search::Quick {
+            let mut whole = vec![Motion::IDENTITY];
+            whole.extend(moments::by_axes(&points, &self.points));
+            found.follow(whole, Freedom::Similarity);
+            if found.best() < CLEAR {
+                let affine = moments::by_fourth_moments(&points, &self.points);
+                found.follow(affine, Freedom::Affine);
+            }
+            return found.conclude();
+        }
+        let area = suspect.area();
+        let mut cloud = Points::of(suspect, CLOUD / 2, 4);
+        if search == Search::Mirrored {
+            cloud = cloud.mirrored();
+        }
+        let mut motions = self.by_features(&cloud, area);
+        if search == Search::Mirrored {
+            motions.iter_mut().for_each(|m| m.linear *= MIRROR);
+        }
+        found.follow(motions, Freedom::Similarity);
+        found.conclude()
+    }
+
+    /// Motions by features at every radius.
+    fn by_features(&self, cloud: &Points, area: f64) -> Vec<Motion> {
+        let look = features::look_of_suspect(cloud, area);
+        let looks = self.looks().iter().zip(5..);
+        looks
+            .flat_map(|(original, seed)| look.onto(original, seed))
+            .collect()
+    }
+
+    /// The share of this original that a suspect covers when it is moved, 0 to 1.
+    pub fn covered_by(&self, suspect: &Mesh, motion: &Motion) -> f64 {
+        let moved = motion.of_mesh(suspect);
+        let surface = Surface::new(&moved);
+        let few = self.points.fewer(10 * SCORED / 4);
+        let is_near = |p: &&DVec3| {
+            let nearest = surface.nearest(**p);
+            nearest.is_some_and(|nearest| nearest.distance < FINE * self.diagonal)
+        };
+        few.positions.iter().filter(is_near).count() as f64 / few.positions.len().max(1) as f64
+    }
+
+    fn scored(&self, points: &Points, motion: Motion) -> Registration {
+        Registration {
+            motion,
+            near: self.near(points, &motion, FINE),
+            exact: self.near(points, &motion, EXACT),
+        }
+    }
+
+    /// The share of points that lie near the original, as a share of its diagonal, when they are moved.
+    fn near(&self, points: &Points, motion: &Motion, distance: f64) -> f64 {
+        let turned = motion.linear.inverse().transpose();
+        if !turned.is_finite() {
+            return 0.0;
+        }
+        let is_near = |(p, n): (&DVec3, &DVec3)| {
+            let at = motion.of(*p);
+            self.surface.foot(at).is_some_and(|(foot, plane)| {
+                foot.distance(at) < distance * self.diagonal
+                    && (turned * *n).normalize_or_zero().dot(plane) > 0.5
+            })
+        };
+        let pairs = points.positions.iter().zip(&points.normals);
+        pairs.filter(|pair| is_near(*pair)).count() as f64 / points.positions.len().max(1) as f64
+    }
+}
+
+/// What was found of a suspect so far.
+struct Found<'a> {
+    original: &'a Original<'a>,
+    all: &'a Points,
+    scored: Points,
+    refined: Points,
+    kept: Vec<Registration>,
+}
+
+impl<'a> Found<'a> {
+    fn new(original: &'a Original, all: &'a Points) -> Found<'a> {
+        Found {
+            original,
+            all,
+            scored: all.fewer(SCORED),
+            refined: all.fewer(REFINED),
+            kept: Vec::new(),
+        }
+    }
+
+    fn best(&self) -> f64 {
+        self.kept.iter().map(|kept| kept.near).fold(0.0, f64::max)
+    }
+
+    /// Scores candidates, and refines the best.
+    fn follow(&mut self, candidates: Vec<Motion>, freedom: Freedom) {
+        let few = self.scored.fewer(SCORED / 4);
+        let mut scored: Vec<(f64, Motion)> = candidates
+            .into_iter()
+            .map(|motion| (self.original.near(&few, &motion, COARSE), motion))
+            .collect();
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        scored.truncate(8 * FOLLOWED);
+        for (score, motion) in &mut scored {
+            *score = self.original.near(&self.scored, motion, COARSE);
+        }
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut followed: Vec<Motion> = Vec::new();
+        for (_, motion) in scored {
+            let is_new = followed
+                .iter()
+                .all(|other| self.differs(other, &motion, 0.02));
+            if is_new && followed.len() < FOLLOWED {
+                followed.push(motion);
+            }
+        }
+        let d = self.original.diagonal;
+        for motion in followed {
+            let motion = refined(
+                &self.refined,
+                &self.original.surface,
+                motion,
+                freedom,
+                15,
+                [0.1 * d, 0.01 * d],
+                0.003 * d,
+            );
+            self.kept.push(self.original.scored(&self.scored, motion));
+        }
+    }
+
+    /// Whether two motions take the suspect to different places.
+    fn differs(&self, a: &Motion, b: &Motion, share: f64) -> bool {
+        let points = &self.scored.positions;
+        let square = |p: &DVec3| a.of(*p).distance_squared(b.of(*p));
+        let mean = points.iter().map(square).sum::<f64>() / points.len().max(1) as f64;
+        mean.sqrt() > share * self.original.diagonal
+    }
+
+    /// The best that differ, brought as near as can be.
+    fn conclude(self) -> Vec<Registration> {
+        let mut all = self.kept.clone();
+        all.sort_by(|a, b| b.score().total_cmp(&a.score()));
+        let best = self.best();
+        let mut kept: Vec<Registration> = Vec::new();
+        for candidate in all {
+            let is_new =
+                |other: &Registration| self.differs(&other.motion, &candidate.motion, 0.005);
+            if candidate.near > best - NEARLY && kept.len() < KEPT && kept.iter().all(is_new) {
+                kept.push(candidate);
+            }
+        }
+        let d = self.original.diagonal;
+        let finish = |registration: Registration| {
+            let surface = &self.original.surface;
+            let mut motion = registration.motion;
+            for (freedom, rounds) in [(Freedom::Similarity, 4), (Freedom::Affine, 8)] {
+                let reach = [0.012 * d, 0.006 * d];
+                motion = refined(self.all, surface, motion, freedom, rounds, reach, 0.001 * d);
+            }
+            self.original.scored(self.all, motion)
+        };
+        let mut finished: Vec<Registration> = kept.into_iter().map(finish).collect();
+        finished.sort_by(|a, b| b.score().total_cmp(&a.score()));
+        finished
+    }
+}

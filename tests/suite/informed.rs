@@ -1,0 +1,203 @@
+//! Reading with the original, and with the record of an embedding.
+
+use crate::support::fixtures::{asteroid, key, marked, payload};
+use glam::DVec3;
+use meshmark::internals::attack::{crop, quantize, remesh, similarity, simplify};
+use meshmark::internals::carrier::{Frames, Host, Seen};
+use meshmark::internals::code::{Codeword, Symbol};
+use meshmark::internals::detection::{ln_p_of_errors, union};
+use meshmark::internals::document::Document;
+use meshmark::internals::geometry::{Bounds, Leeway, Original, Parts, Search, Shown, Views};
+use meshmark::internals::mesh::{Admissible, Mesh, shapes};
+use meshmark::internals::scene::{Scene, to_glb};
+use meshmark::{
+    Comparison, Embedding, RecordOptions, Shape, Verdict, Witness, compare, compare_with_record,
+    record,
+};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+/// An original, its marked copy, and the copy's mesh.
+fn case() -> (Vec<u8>, Embedding, Mesh) {
+    let original = to_glb(&asteroid());
+    let marked = marked(&original, &key(1)).unwrap();
+    let mesh = mesh_of(&marked.model);
+    (original, marked, mesh)
+}
+
+fn mesh_of(model: &[u8]) -> Mesh {
+    let document = Document::read(model, &Default::default()).unwrap();
+    Scene::gather(&document).unwrap().mesh
+}
+
+fn mirrored(mesh: &Mesh) -> Mesh {
+    let turned = mesh.positions.iter().map(|p| DVec3::new(-p.x, p.y, p.z));
+    let mut mirrored = mesh.with_positions(turned.collect());
+    mirrored.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    mirrored
+}
+
+fn assert_found(answer: &Comparison, what: &str) {
+    assert_eq!(answer.verdict, Verdict::Found, "{what}: {answer:?}");
+    assert_eq!(answer.number, Some(payload().number()), "{what}");
+    assert_eq!(answer.shape, Shape::Same, "{what}");
+    assert_ne!(answer.witness, Some(Witness::Blind), "{what}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_finds_pieces_with_other_triangles() {
+    let (original, marked, mesh) = case();
+    let kept = record(
+        &original,
+        &marked.report,
+        &key(1),
+        &RecordOptions::default(),
+    )
+    .unwrap();
+    let piece = quantize(&simplify(&crop(&mesh, 0.3, 3), 0.5), 10);
+    let piece = to_glb(&similarity(&piece, 4));
+    let answer = compare(&piece, &original, &key(1)).unwrap();
+    assert_found(&answer, "with the original");
+    assert!(answer.near > 0.95 && (0.5..0.9).contains(&answer.covered));
+    let answer = compare_with_record(&piece, &kept, &key(1)).unwrap();
+    assert_found(&answer, "with the record");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_finds_mirrored_and_stretched_copies() {
+    let (original, _, mesh) = case();
+    let stretched = mesh
+        .positions
+        .iter()
+        .map(|p| *p * DVec3::new(1.5, 1.0, 0.7));
+    let stretched = mesh.with_positions(stretched.collect());
+    for (name, suspect, is_mirrored) in [
+        ("mirrored, remeshed", remesh(&mirrored(&mesh), 0.02), true),
+        ("stretched, simplified", simplify(&stretched, 0.3), false),
+    ] {
+        let suspect = to_glb(&similarity(&suspect, 5));
+        let answer = compare(&suspect, &original, &key(1)).unwrap();
+        assert_found(&answer, name);
+        assert_eq!(answer.is_mirrored, is_mirrored, "{name}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_tells_an_unmarked_copy_from_another_shape() {
+    let (original, ..) = case();
+    let unmarked = to_glb(&similarity(&asteroid(), 6));
+    let answer = compare(&unmarked, &original, &key(1)).unwrap();
+    assert_eq!((answer.verdict, answer.shape), (Verdict::None, Shape::Same));
+    assert!(answer.sentence.contains("your mark is not in it"));
+    assert!(
+        !serde_json::to_string(&answer).unwrap().contains("lnP"),
+        "what follows the key is for its owner"
+    );
+    let other = to_glb(&shapes::torus_knot(60, 20));
+    let answer = compare(&other, &original, &key(1)).unwrap();
+    assert_eq!(
+        (answer.verdict, answer.shape),
+        (Verdict::None, Shape::Other),
+        "near {}",
+        answer.near
+    );
+}
+
+/// Keys that marked nothing, on a marked copy that lies on its original.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_bound_holds_for_wrong_keys() {
+    let (original, _, suspect) = case();
+    let original = mesh_of(&original);
+    let parts = Parts::new(&original);
+    let leeway = Leeway::new(&original, &parts, Bounds::HIDDEN);
+    let admissible = Admissible::default();
+    let host = Host {
+        mesh: &original,
+        leeway: &leeway,
+        admissible: &admissible,
+        rms_rel: 0.0004,
+        hidden: true,
+        on_top: false,
+    };
+    let surface = Original::new(&original);
+    let views = Views::new(&original);
+    let registration = surface.registrations(&suspect, Search::Quick)[0];
+    let shown = Shown::new(&surface, &views, &suspect, &registration.motion).unwrap();
+    let frames = Frames::new(&host);
+    let observe = |radius: f64| shown.observations(radius);
+    let seen: [&Seen; 1] = [&observe];
+    let mut charged = Vec::new();
+    for number in 100..112 {
+        let mut best = 0.0f64;
+        let reader = frames.with_key(&key(number));
+        let mut hear = |way: meshmark::internals::carrier::Way| {
+            let pilots = way.places.iter().filter(|p| p.symbol == Symbol::Pilot);
+            let pilots = ln_p_of_errors(pilots.map(|p| (p.response, p.errors[1])));
+            let all = way.places.iter().map(|p| {
+                let is_plus = Codeword::Presence.sign(p.symbol) > 0.0;
+                (p.response, p.errors[usize::from(is_plus)])
+            });
+            let ln_p = union(pilots.min(ln_p_of_errors(all)), way.ln_num_tests + 1.0);
+            best = best.min(ln_p);
+            false
+        };
+        let mut progress = |_, _| std::ops::ControlFlow::Continue(());
+        reader.read(&seen, &mut progress, &mut hear).unwrap();
+        charged.push(best);
+    }
+    let below = |most: f64| charged.iter().filter(|ln_p| **ln_p <= most).count();
+    assert!(below(-3.0) <= 1 && below(-6.0) == 0, "{charged:?}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_records_are_refused_where_they_are_not_as_they_were_written() {
+    let (original, marked, mesh) = case();
+    let options = RecordOptions::default()
+        .with_owner("Ada")
+        .with_date("2026-11-29");
+    let kept = record(&original, &marked.report, &key(1), &options).unwrap();
+    assert_eq!(
+        kept,
+        record(&original, &marked.report, &key(1), &options).unwrap(),
+        "the same of the same"
+    );
+    assert!(kept.len() < 60_000, "{} bytes", kept.len());
+    for clear in ["\"Ada\"", "\"2026-11-29\"", "\"ADA-1\""] {
+        assert!(kept.contains(clear), "{clear}");
+    }
+    let suspect = to_glb(&mesh);
+    let code = |text: &str, number: u8| {
+        compare_with_record(&suspect, text, &key(number))
+            .err()
+            .map(|error| error.code())
+    };
+    assert_eq!(code(&kept, 1), None);
+    assert_eq!(code(&kept, 2), Some("record.other-key"));
+    let of_another = kept.replace("ADA-1", "BOB-1");
+    assert_eq!(code(&of_another, 1), Some("record.damaged"), "another tag");
+    let at = kept.find("\"sealed\": \"").unwrap() + 500;
+    let other = if &kept[at..at + 1] == "A" { "B" } else { "A" };
+    let changed = format!("{}{other}{}", &kept[..at], &kept[at + 1..]);
+    assert_eq!(code(&changed, 1), Some("record.damaged"), "another letter");
+    let later = kept.replace("\"version\": 1", "\"version\": 2");
+    assert_eq!(code(&later, 1), Some("record.version"));
+    assert_eq!(code("{}", 1), Some("record.not-a-record"));
+}
+
+/// docs/FORMAT.md, "The record": what is sealed never changes.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_seals_never_change() {
+    let sealed = key(1).seal(b"sealed", b"clear");
+    assert_eq!(key(1).unseal(&sealed, b"clear").unwrap(), b"sealed");
+    assert_eq!(key(1).unseal(&sealed, b"other"), None);
+    assert_eq!(key(2).unseal(&sealed, b"clear"), None);
+    assert_eq!(sealed.len(), 12 + 6 + 16);
+    let hex = |bytes: &[u8]| -> String { bytes.iter().map(|b| format!("{b:02x}")).collect() };
+    assert_eq!(
+        hex(&sealed),
+        "5f6aa12adcb4656c637ccd47150481e43e91c1f7d5d5de6e381b9b0d59c732909880"
+    );
+    assert_eq!(
+        hex(&key(1).commitment()),
+        "1fa937316ee6b02f4501280145df1f5a"
+    );
+}

@@ -62,9 +62,9 @@ pub use scene::SceneError;
 pub use watermark::{
     Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
     Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
-    NoteReading, NoteReport, NoteSize, Strength, Surface, Suspect, Unshown, Verdict, capacity,
-    decompress, detect, embed, embed_note, extract, extract_many, file_names, inspect, measure,
-    note_capacity, read_note, verify,
+    NoteReading, NoteReport, NoteSize, Plan, StampReport, Stamped, Strength, Surface, Suspect,
+    Unshown, Verdict, capacity, decompress, detect, embed, embed_note, extract, extract_many,
+    file_names, inspect, measure, note_capacity, prepare, read_note, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -14,6 +14,7 @@ pub mod solid;
 pub use error::{CarrierError, StoredError};
 pub(crate) use error::{possible, take};
 pub use reading::{Hypothesis, Reading};
+pub use solid::{Choice, Chosen};
 
 use crate::code::Codeword;
 use crate::geometry::{Leeway, Piece};
@@ -70,6 +71,20 @@ impl Carrier {
         match self {
             Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
+        }
+    }
+
+    /// A host, ready for any message under a key, as an embedding chose; none where it cannot hold one. RING's is ready whatever SOLID
+    /// does below it.
+    pub(crate) fn prepare(
+        self,
+        host: &Host,
+        key: &Key,
+        chosen: &[solid::Chosen],
+    ) -> Option<Prepared> {
+        match self {
+            Carrier::Solid => Some(Prepared::Solid(solid::Prepared::new(host, key, chosen))),
+            Carrier::Ring => ring::Prepared::new(host).ok().map(Prepared::Ring),
         }
     }
 
@@ -252,6 +267,8 @@ pub struct Embedded {
     pub exponent: f64,
     /// What that has to be.
     pub needs: Needs,
+    /// What was chosen for each frame, of SOLID's: with that another message is embedded more quickly.
+    pub chosen: Vec<solid::Chosen>,
 }
 
 /// Exponents that a mark needs, in nats.
@@ -283,6 +300,24 @@ impl Embedded {
     /// Whether it holds a payload, and stands what else happens to models.
     pub fn is_sturdy(&self) -> bool {
         self.exponent >= self.needs.sturdy
+    }
+}
+
+/// A host that is ready for further messages.
+pub(crate) enum Prepared {
+    /// SOLID's.
+    Solid(solid::Prepared),
+    /// RING's.
+    Ring(ring::Prepared),
+}
+
+impl Prepared {
+    /// The displacement of all V vertices of that host that gives it a mark, whatever it then holds.
+    pub fn again(&self, host: &Host, mark: &Mark) -> Vec<DVec3> {
+        match self {
+            Prepared::Solid(solid) => solid.again(host, mark),
+            Prepared::Ring(ring) => ring.again(host, mark),
+        }
     }
 }
 

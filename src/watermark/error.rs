@@ -67,6 +67,9 @@ pub enum Error {
     /// No carrier was chosen.
     #[error("no carrier was chosen")]
     NoCarrier,
+    /// The model holds a mark without a payload only.
+    #[error("the model is too small to hold a number, so its copies cannot be told apart")]
+    NoCopies,
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
         "the mark could not be read back from the marked model, so nothing was returned{}",
@@ -117,6 +120,7 @@ impl Error {
             Error::Evidence(error) => error.code(),
             Error::Strength(_) => "options.strength",
             Error::MaxMovement(_) => "options.max-movement",
+            Error::NoCopies => "copies.no-number",
             Error::NoCarrier => "options.no-carrier",
             Error::Unreadable { .. } => "watermark.unreadable",
             Error::Refused { refusal, .. } => refusal.code(),

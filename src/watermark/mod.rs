@@ -1,6 +1,7 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
 mod capacity;
+mod copies;
 mod displace;
 mod embed;
 mod error;
@@ -18,6 +19,7 @@ mod suspect;
 mod unshown;
 
 pub use capacity::{Capacity, Holds, capacity};
+pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error};
 pub use extract::{detect, extract, extract_many, measure, verify};

@@ -19,7 +19,7 @@ mod embed;
 mod feature;
 mod measurement;
 
-pub use embed::embed;
+pub use embed::{Prepared, embed};
 pub use measurement::Measurement;
 
 use crate::code::Symbol;

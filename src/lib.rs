@@ -60,11 +60,12 @@ pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
-    Advice, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
+    Advice, Buyer, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
     Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
-    NoteReading, NoteReport, NoteSize, Plan, StampReport, Stamped, Strength, Surface, Suspect,
-    Unshown, Verdict, capacity, decompress, detect, embed, embed_note, extract, extract_many,
-    file_names, inspect, measure, note_capacity, prepare, read_note, verify,
+    NoteReading, NoteReport, NoteSize, Plan, PlanError, StampReport, Stamped, Strength, Surface,
+    Suspect, Traced, Tracing, Unshown, Verdict, capacity, decompress, detect, embed, embed_note,
+    extract, extract_many, file_names, inspect, measure, note_capacity, prepare, read_note, trace,
+    trace_evidence, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

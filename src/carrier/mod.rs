@@ -312,11 +312,30 @@ pub(crate) enum Prepared {
 }
 
 impl Prepared {
-    /// The displacement of all V vertices of that host that gives it a mark, whatever it then holds.
-    pub fn again(&self, host: &Host, mark: &Mark) -> Vec<DVec3> {
+    /// Whose it is.
+    pub fn carrier(&self) -> Carrier {
         match self {
-            Prepared::Solid(solid) => solid.again(host, mark),
-            Prepared::Ring(ring) => ring.again(host, mark),
+            Prepared::Solid(_) => Carrier::Solid,
+            Prepared::Ring(_) => Carrier::Ring,
+        }
+    }
+
+    /// What a key reads of a marked copy as it is, where a detector finds the mark at once.
+    pub fn read(&self, copy: &Mesh, key: &Key) -> Reading {
+        match self {
+            Prepared::Solid(_) => Carrier::Solid
+                .read_at_once(copy, key, &mut ignore)
+                .unwrap_or_default(),
+            Prepared::Ring(ring) => ring.read(copy, key),
+        }
+    }
+
+    /// The displacement of all V vertices of that host that gives it a mark, whatever it then holds: in few rounds, or in as many as an
+    /// embedding takes.
+    pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
+        match self {
+            Prepared::Solid(solid) => solid.again(host, mark, is_thorough),
+            Prepared::Ring(ring) => ring.again(host, mark, is_thorough),
         }
     }
 }

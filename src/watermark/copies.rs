@@ -3,19 +3,20 @@
 use super::displace::{Moved, Used, displacement_again, host, write};
 use super::embed::embed_in;
 use super::extract::detect;
+use super::judge::Judge;
 use super::marking::Recipe;
-use super::read_back::{is_read, read_at_once};
-use super::report::Extraction;
+use super::read_back::is_read;
+use super::report::{Extraction, Input};
 use super::{EmbedOptions, EmbedReport, Error, Model};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, Mark, Prepared};
 use crate::code::{Checked, Codeword, Numbers};
 use crate::digest::sha256;
-use crate::document::{Document, Files};
+use crate::document::{Document, Files, Written};
 use crate::geometry::{Distortion, Leeway, Parts};
 use crate::key::Key;
-use crate::progress::ignore;
 use crate::scene::Scene;
+use glam::DVec3;
 use serde::Serialize;
 
 /// The number whose copy a plan is tried with.
@@ -27,15 +28,20 @@ const WEAKER: f64 = 0.75;
 /// A host that is ready to be stamped with any number. It holds the host and the key: who has it can make copies and read them, so it is as
 /// secret as the key.
 pub struct Plan {
-    host: Vec<u8>,
-    files: Files,
-    key: Key,
-    options: EmbedOptions,
-    recipe: Recipe,
-    /// What was read of the specimen.
-    ln_p: f64,
+    pub(super) stored: Stored,
     shown: Place,
     unshown: Vec<Place>,
+}
+
+/// What a plan is made from.
+pub(super) struct Stored {
+    pub host: Vec<u8>,
+    pub files: Files,
+    pub key: Key,
+    pub options: EmbedOptions,
+    pub recipe: Recipe,
+    /// What was read of the specimen.
+    pub ln_p: f64,
 }
 
 /// A scene that is marked for itself: the one that is shown, or a mesh that no scene shows.
@@ -44,6 +50,15 @@ struct Place {
     parts: Parts,
     leeway: Leeway<'static>,
     carriers: Vec<Prepared>,
+}
+
+/// The host with a mark.
+struct Copied {
+    written: Written,
+    positions: Vec<DVec3>,
+    num_cuts: usize,
+    /// 0 where its payload was not read at once.
+    ln_p: f64,
 }
 
 /// A copy.
@@ -102,34 +117,32 @@ pub fn prepare<'a>(
         return Err(Error::NoCopies);
     }
     let ln_p = report.read_back.details().ln_p;
-    let plan = Plan::new(bytes, files, key, options.clone(), recipe, ln_p)?;
+    let plan = Plan::of(Stored {
+        host: bytes,
+        files,
+        key: key.clone(),
+        options: options.clone(),
+        recipe,
+        ln_p,
+    })?;
     Ok((plan, report))
 }
 
 impl Plan {
-    fn new(
-        bytes: Vec<u8>,
-        files: Files,
-        key: &Key,
-        options: EmbedOptions,
-        recipe: Recipe,
-        ln_p: f64,
-    ) -> Result<Plan, Error> {
-        let document = Document::read(&bytes, &files)?;
-        let shown = Place::new(Scene::gather(&document)?, &recipe.shown, key, &options)?;
+    /// Looks at a host for which all is chosen.
+    pub(super) fn of(stored: Stored) -> Result<Plan, Error> {
+        let Stored { key, options, .. } = &stored;
+        let document = Document::read(&stored.host, &stored.files)?;
+        let scene = Scene::gather(&document)?;
+        let shown = Place::new(scene, &stored.recipe.shown, key, options)?;
         let mut unshown = Vec::new();
-        for (mesh, used) in &recipe.unshown {
+        for (mesh, used) in &stored.recipe.unshown {
             let scene = Scene::of_mesh(&document, *mesh)?;
-            unshown.push(Place::new(scene, used, key, &options)?);
+            unshown.push(Place::new(scene, used, key, options)?);
         }
         drop(document);
         Ok(Plan {
-            host: bytes,
-            files,
-            key: key.clone(),
-            options,
-            recipe,
-            ln_p,
+            stored,
             shown,
             unshown,
         })
@@ -143,55 +156,86 @@ impl Plan {
     /// # Errors
     /// [`Error::Payload`] for a number out of range; [`Error::Unreadable`] where the number cannot be found again in the copy.
     pub fn stamp(&self, number: u64) -> Result<Stamped, Error> {
-        let payload = Numbers::new(&self.key).payload(number)?;
-        let codeword = Codeword::new(Checked::new(&self.key).message(payload));
+        let payload = Numbers::new(&self.stored.key).payload(number)?;
+        let codeword = Codeword::new(Checked::new(&self.stored.key).message(payload));
         let mark = Mark {
-            key: &self.key,
+            key: &self.stored.key,
             codeword: &codeword,
         };
-        let model = Model::new(&self.host).with_files(&self.files);
-        let (mut document, moved) = self.shown.write(&model, &mark, &self.options)?;
-        for place in &self.unshown {
-            let (_, moved) = place.write(&model, &mark, &self.options)?;
-            place.scene.scatter(&mut document, &moved.displacement)?;
+        let mut copy = self.copy(&mark, payload, false)?;
+        if self.is_weaker(copy.ln_p) {
+            copy = self.copy(&mark, payload, true)?;
         }
-        let mesh = self.shown.scene.mesh.with_positions(moved.positions);
-        let written = document.write()?;
-        drop(document);
-        let mut found = read_at_once(&mesh, &self.key, &mut ignore)?;
-        if !is_read(&found, Some(payload)) {
-            found = self.read_as_anybody(&written.model, &written.files)?;
+        if copy.ln_p == 0.0 {
+            let found = self.read_as_anybody(&copy.written)?;
+            if !is_read(&found, Some(payload)) {
+                return Err(Error::Unreadable {
+                    has_axes: Carrier::has_axes(&self.shown.scene.mesh),
+                });
+            }
+            copy.ln_p = found.details().ln_p;
         }
-        if !is_read(&found, Some(payload)) {
-            return Err(Error::Unreadable {
-                has_axes: Carrier::has_axes(&self.shown.scene.mesh),
-            });
-        }
-        let ln_p = found.details().ln_p;
-        let distortion = Distortion::between(&self.shown.scene.mesh.positions, &mesh.positions);
+        let host = &self.shown.scene.mesh.positions;
+        let distortion = Distortion::between(host, &copy.positions);
         let report = StampReport {
             number,
             payload: payload.number(),
             moved_vertices: distortion.num_moved,
             rms_rel: distortion.rms_rel,
             max_rel: distortion.max_rel,
-            new_intersections: moved.num_cuts,
-            ln_p,
-            is_weaker: ln_p > WEAKER * self.ln_p,
-            marked_sha256: sha256(&written.model),
+            new_intersections: copy.num_cuts,
+            ln_p: copy.ln_p,
+            is_weaker: self.is_weaker(copy.ln_p),
+            marked_sha256: sha256(&copy.written.model),
         };
         Ok(Stamped {
-            model: written.model,
-            files: written.files,
+            model: copy.written.model,
+            files: copy.written.files,
             report,
         })
     }
 
+    fn is_weaker(&self, ln_p: f64) -> bool {
+        ln_p > WEAKER * self.stored.ln_p
+    }
+
+    /// The host with a mark, and what is read of it where it is looked for at once.
+    fn copy(&self, mark: &Mark, payload: Payload, is_thorough: bool) -> Result<Copied, Error> {
+        let model = Model::new(&self.stored.host).with_files(&self.stored.files);
+        let write = |place: &Place| place.write(&model, mark, &self.stored.options, is_thorough);
+        let (mut document, moved) = write(&self.shown)?;
+        for place in &self.unshown {
+            let (_, moved) = write(place)?;
+            place.scene.scatter(&mut document, &moved.displacement)?;
+        }
+        let written = document.write()?;
+        drop(document);
+        let mesh = self.shown.scene.mesh.with_positions(moved.positions);
+        let mut readings = Carrier::ALL.map(|_| Default::default());
+        for prepared in &self.shown.carriers {
+            readings[prepared.carrier() as usize] = prepared.read(&mesh, &self.stored.key);
+        }
+        let found = Judge::new(&self.stored.key, None, Input::Model).conclude(&readings);
+        Ok(Copied {
+            written,
+            positions: mesh.positions,
+            num_cuts: moved.num_cuts,
+            ln_p: match is_read(&found, Some(payload)) {
+                true => found.details().ln_p,
+                false => 0.0,
+            },
+        })
+    }
+
     /// Reads a copy as a detector does that knows no more than the key.
-    fn read_as_anybody(&self, model: &[u8], changed: &Files) -> Result<Extraction, Error> {
-        let mut files = self.files.clone();
-        files.extend(changed.clone());
-        detect(Model::new(model).with_files(&files), &self.key, None)
+    fn read_as_anybody(&self, copy: &Written) -> Result<Extraction, Error> {
+        let mut files = self.stored.files.clone();
+        files.extend(copy.files.clone());
+        detect(
+            Model::new(&copy.model).with_files(&files),
+            &self.stored.key,
+            None,
+        )
     }
 }
 
@@ -218,10 +262,17 @@ impl Place {
         model: &Model,
         mark: &Mark,
         options: &EmbedOptions,
+        is_thorough: bool,
     ) -> Result<(Document, Moved), Error> {
         let mut document = Document::read(model.bytes, model.files)?;
-        let displacement =
-            displacement_again(&self.scene, &self.leeway, mark, &self.carriers, options);
+        let displacement = displacement_again(
+            &self.scene,
+            &self.leeway,
+            mark,
+            &self.carriers,
+            options,
+            is_thorough,
+        );
         let moved = write(
             model,
             &mut document,

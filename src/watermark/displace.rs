@@ -36,10 +36,11 @@ pub(super) fn displacement_again(
     mark: &Mark,
     prepared: &[Prepared],
     options: &EmbedOptions,
+    is_thorough: bool,
 ) -> Vec<DVec3> {
     let mut mesh = scene.mesh.clone();
     for carrier in prepared {
-        let displacement = carrier.again(&host(scene, &mesh, leeway, options), mark);
+        let displacement = carrier.again(&host(scene, &mesh, leeway, options), mark, is_thorough);
         mesh.displace(&displacement);
     }
     within_limit(scene, &mesh, options)

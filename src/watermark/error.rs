@@ -31,6 +31,37 @@ impl std::fmt::Display for Advice {
     }
 }
 
+/// The version of plans that is written and read.
+pub(super) const PLAN_VERSION: u16 = 1;
+
+/// Why bytes are not a plan.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// Something else.
+    #[error("this is not a plan for copies")]
+    NotPlan,
+    /// A plan of another version.
+    #[error(
+        "this plan was made by another version (format {0}); this one reads format {PLAN_VERSION}: prepare the model again"
+    )]
+    Version(u16),
+    /// Cut short or damaged.
+    #[error("the plan is damaged: prepare the model again")]
+    Damaged,
+}
+
+impl PlanError {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            PlanError::NotPlan => "plan.not-plan",
+            PlanError::Version(_) => "plan.version",
+            PlanError::Damaged => "plan.damaged",
+        }
+    }
+}
+
 /// Why nothing was embedded, measured or read. "No mark found" is a result, not an error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -56,6 +87,9 @@ pub enum Error {
     /// The evidence cannot be read.
     #[error(transparent)]
     Evidence(#[from] EvidenceError),
+    /// The plan cannot be read.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// A strength outside its range.
     #[error(
         "strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}"
@@ -118,6 +152,7 @@ impl Error {
             Error::Payload(error) => error.code(),
             Error::Text(error) => error.code(),
             Error::Evidence(error) => error.code(),
+            Error::Plan(error) => error.code(),
             Error::Strength(_) => "options.strength",
             Error::MaxMovement(_) => "options.max-movement",
             Error::NoCopies => "copies.no-number",

@@ -13,15 +13,17 @@ mod marking;
 mod model;
 mod note;
 mod options;
+mod plan;
 mod read_back;
 mod report;
 mod suspect;
+mod trace;
 mod unshown;
 
 pub use capacity::{Capacity, Holds, capacity};
 pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
-pub use error::{Advice, Error};
+pub use error::{Advice, Error, PlanError};
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
@@ -34,3 +36,4 @@ pub use report::{
     Verdict,
 };
 pub use suspect::{Surface, Suspect};
+pub use trace::{Buyer, Traced, Tracing, trace, trace_evidence};

@@ -24,18 +24,10 @@ pub(super) fn is_seen_at_once(
     payload: Option<Payload>,
     progress: &mut dyn Progress,
 ) -> Result<bool, Error> {
-    Ok(is_read(&read_at_once(mesh, key, progress)?, payload))
-}
-
-/// What a mesh says as it is.
-pub(super) fn read_at_once(
-    mesh: &Mesh,
-    key: &Key,
-    progress: &mut dyn Progress,
-) -> Result<Extraction, Error> {
     let mut readings = Carrier::ALL.map(|_| Default::default());
     for carrier in Carrier::ALL {
         readings[carrier as usize] = carrier.read_at_once(mesh, key, progress)?;
     }
-    Ok(Judge::new(key, None, Input::Model).conclude(&readings))
+    let read = Judge::new(key, None, Input::Model).conclude(&readings);
+    Ok(is_read(&read, payload))
 }

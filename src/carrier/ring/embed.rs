@@ -7,10 +7,12 @@
 
 use super::address::{self, AddressKind, Turn};
 use super::feature::{Features, Neighbourhoods};
+use super::measurement::read_at;
 use super::{Measurement, Owned, Ownership, SHARE, STEP};
 use crate::carrier::qim::curvature;
-use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs};
+use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs, Reading};
 use crate::geometry::{Pose, conjugate_gradients, diagonal, unconditioned, vertex_normals};
+use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, ignore, step};
 use glam::DVec3;
@@ -98,9 +100,24 @@ impl Prepared {
     }
 
     /// The displacement that gives the host, or one whose vertices are a little elsewhere, a mark.
-    pub fn again(&self, host: &Host, mark: &Mark) -> Vec<DVec3> {
-        let displacement = self.displacement(host, mark, ROUNDS_AGAIN, &mut ignore);
+    pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
+        let rounds = if is_thorough { ROUNDS } else { ROUNDS_AGAIN };
+        let displacement = self.displacement(host, mark, rounds, &mut ignore);
         displacement.unwrap_or_default() // what ignores progress is not cancelled
+    }
+
+    /// What a key reads of a mesh that differs from the host in a little displacement: no other kind of address is looked at.
+    pub fn read(&self, mesh: &Mesh, key: &Key) -> Reading {
+        let positions = &mesh.positions;
+        let features = Features::new(positions, &self.neighbourhoods);
+        match self.kind {
+            AddressKind::Connectivity => read_at(&features, &self.by_connectivity, key),
+            AddressKind::Geometry => {
+                let addresses = address::by_geometry(positions, &self.neighbourhoods, &features);
+                read_at(&features, &addresses, key)
+            }
+            AddressKind::Position(_) => Measurement::new(mesh).read(key),
+        }
     }
 
     fn displacement(

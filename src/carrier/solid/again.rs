@@ -3,6 +3,7 @@
 use super::embed::ground;
 use super::lattice::{Lattice, Placement};
 use super::objects::{Chosen, Marked, vertices_of};
+use super::pitch::{AREAS_TO_EMBED, pitches};
 use super::problem::Problem;
 use super::rounds::{Choice, Ground, Rounds, dither};
 use super::window::Window;
@@ -76,12 +77,12 @@ impl Prepared {
     }
 
     /// The displacement of all vertices of the same host that gives it a mark.
-    pub fn again(&self, host: &Host, mark: &Mark) -> Vec<DVec3> {
+    pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
         let lattice = Lattice::of(mark.key);
         let mut scene = Marked::new(host);
         for frame in &self.frames {
             match &frame.object {
-                None => scene.displacement = frame.again(host, &lattice, mark),
+                None => scene.displacement = frame.again(host, &lattice, mark, is_thorough),
                 Some(object) => {
                     let own = Host {
                         mesh: &frame.ground.mesh,
@@ -89,7 +90,7 @@ impl Prepared {
                         admissible: &object.admissible,
                         ..*host
                     };
-                    let displacement = frame.again(&own, &lattice, mark);
+                    let displacement = frame.again(&own, &lattice, mark, is_thorough);
                     scene.decide(&object.vertices, &displacement);
                 }
             }
@@ -107,6 +108,11 @@ impl Frame {
     ) -> Option<Frame> {
         let ground = ground(host)?;
         let placement = lattice.placed(DMat3::IDENTITY, choice.pitch);
+        // A plan may be anybody's bytes: a finer lattice has as many windows as it likes.
+        let is_fit = pitches(ground.area(), AREAS_TO_EMBED).any(|pitch| pitch == choice.pitch);
+        if !is_fit {
+            return None;
+        }
         let active = ground.windows(&placement);
         if active.is_empty() {
             return None;
@@ -121,7 +127,7 @@ impl Frame {
         })
     }
 
-    fn again(&self, host: &Host, lattice: &Lattice, mark: &Mark) -> Vec<DVec3> {
+    fn again(&self, host: &Host, lattice: &Lattice, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
         let mut active = self.active.clone();
         dither(&mut active, lattice, mark.codeword);
         let rounds = Rounds {
@@ -131,6 +137,6 @@ impl Frame {
             problem: &self.problem,
             active: &active,
         };
-        rounds.again(&self.choice)
+        rounds.again(&self.choice, is_thorough)
     }
 }

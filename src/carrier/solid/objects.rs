@@ -17,6 +17,7 @@ const ENOUGH: f64 = 0.5;
 pub struct Chosen {
     /// Which of the scene's stable objects it is; none for the whole.
     pub object: Option<u32>,
+    /// With what.
     pub choice: Choice,
 }
 

@@ -168,14 +168,15 @@ impl Rounds<'_> {
     }
 
     /// Embeds as a choice was made before, with another message: the displacement.
-    pub fn again(&self, choice: &Choice) -> Vec<DVec3> {
+    pub fn again(&self, choice: &Choice, is_thorough: bool) -> Vec<DVec3> {
         let step = choice.step / self.placement.pitch;
         let mut state = State {
             displacement: vec![DVec3::ZERO; self.ground.mesh.positions.len()],
             multipliers: vec![0.0; self.active.len()],
             ridge: choice.ridge,
         };
-        for round in 0..ROUNDS_AGAIN {
+        let rounds = if is_thorough { ROUNDS } else { ROUNDS_AGAIN };
+        for round in 0..rounds {
             let phases = match round {
                 0 => (self.active.iter())
                     .map(|window| window.flux / step + window.dither)

@@ -61,11 +61,11 @@ pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
 pub use watermark::{
     Advice, Buyer, Capacity, CarrierReading, Details, EmbedOptions, EmbedReport, Embedding, Error,
-    Extraction, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
-    NoteReading, NoteReport, NoteSize, Plan, PlanError, StampReport, Stamped, Strength, Surface,
-    Suspect, Traced, Tracing, Unshown, Verdict, capacity, decompress, detect, embed, embed_note,
-    extract, extract_many, file_names, inspect, measure, note_capacity, prepare, read_note, trace,
-    trace_evidence, verify,
+    Extraction, Finding, Forecast, FoundIn, Holds, Input, Inspection, Level, Model, NoteEmbedding,
+    NoteReading, NoteReport, NoteSize, Plan, PlanError, StampReport, Stamped, StatedFile,
+    Statement, Strength, Surface, Suspect, Traced, Tracing, Unshown, Verdict, capacity, decompress,
+    detect, embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
+    prepare, read_note, trace, trace_evidence, verify,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -5,8 +5,11 @@ use crate::failure::Failure;
 use crate::file::{load, open_suspect};
 use crate::report::Report;
 use clap::Args;
-use meshmark::{Evidence, Extraction, Input, Key, Payload, detect, extract, measure, verify};
-use std::path::PathBuf;
+use meshmark::{
+    Evidence, Extraction, Input, Key, Payload, Tracing, detect, extract, measure, trace,
+    trace_evidence, verify,
+};
+use std::path::{Path, PathBuf};
 
 /// What is read.
 #[derive(Args)]
@@ -39,6 +42,28 @@ impl Suspect {
             Some(payload) => verify(&evidence, key, payload),
             None => extract(&evidence, key),
         })
+    }
+
+    /// Says whose copies a model, or what was measured of one, was made of.
+    pub fn trace(&self, key: &Key, numbers: &[u64], clock: &mut Clock) -> Result<Tracing, Failure> {
+        if !self.evidence {
+            let found = open_suspect(&self.input)?;
+            return Ok(trace(found.suspect(clock), key, numbers)?);
+        }
+        let evidence = self.stored()?;
+        clock.start("test");
+        Ok(trace_evidence(&evidence, key, numbers)?)
+    }
+
+    /// What somebody has to say on the command line to read the same.
+    pub fn arguments(&self) -> String {
+        let evidence = if self.evidence { " --evidence" } else { "" };
+        format!("{}{evidence}", self.input.display())
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.input
     }
 
     /// The evidence, measured here where the suspect is a model.

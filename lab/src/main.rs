@@ -21,6 +21,7 @@ mod run;
 mod seed;
 mod study;
 mod surface;
+mod trace;
 mod wild;
 
 use clap::Parser;
@@ -74,6 +75,9 @@ struct Arguments {
     /// Instead of the grid: plain models whose surface is written otherwise, or has more beside it that is not seen; prints a table.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild"])]
     surface: bool,
+    /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
+    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    trace: bool,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -134,6 +138,10 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.surface {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return surface::table(models, &Seed::new(seed));
+    }
+    if arguments.trace {
+        let (models, _) = models::all(arguments.models.as_deref())?;
+        return trace::table(models, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -16,6 +16,7 @@ mod options;
 mod plan;
 mod read_back;
 mod report;
+mod statement;
 mod suspect;
 mod trace;
 mod unshown;
@@ -35,5 +36,6 @@ pub use report::{
     CarrierReading, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level, Unshown,
     Verdict,
 };
+pub use statement::{Finding, StatedFile, Statement};
 pub use suspect::{Surface, Suspect};
 pub use trace::{Buyer, Traced, Tracing, trace, trace_evidence};

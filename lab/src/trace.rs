@@ -128,7 +128,9 @@ impl Row {
 struct Caught {
     some: [usize; LEDGERS.len()],
     all: [usize; LEDGERS.len()],
-    innocents: [usize; LEDGERS.len()],
+    innocents: usize,
+    /// Buyers who had no part in it and were asked for.
+    trials: usize,
     num_models: usize,
     /// RMS distance from the host, as a multiple of one copy's.
     distance: f64,
@@ -140,7 +142,8 @@ impl Caught {
         Caught {
             some: sum(self.some, other.some),
             all: sum(self.all, other.all),
-            innocents: sum(self.innocents, other.innocents),
+            innocents: self.innocents + other.innocents,
+            trials: self.trials + other.trials,
             num_models: self.num_models + other.num_models,
             distance: self.distance + other.distance,
         }
@@ -187,10 +190,9 @@ pub fn table(models: Vec<Model>, seed: &Seed) -> Result<String, String> {
             let sum = all.fold(Caught::default(), Caught::and);
             let cells = (0..LEDGERS.len()).map(|i| format!("{} / {}", sum.some[i], sum.all[i]));
             let cells: Vec<String> = cells.collect();
-            let innocents: usize = sum.innocents.iter().sum();
+            let innocents = sum.innocents;
             num_named += innocents;
-            num_trials +=
-                LEDGERS.iter().map(|n| n - row.num as u64).sum::<u64>() * sum.num_models as u64;
+            num_trials += sum.trials;
             let _ = writeln!(
                 text,
                 "| {} | {} | {innocents} | {:.2} |",
@@ -233,16 +235,25 @@ fn of_model(
             distance: distance(&mixed) / one,
             ..Caught::default()
         };
-        for (place, ledger) in ledgers.iter().enumerate() {
+        let guilty = &numbers[..row.num];
+        let mut is_settled = false;
+        for (place, ledger) in ledgers.iter().enumerate().rev() {
+            // Who is named among many is named among few: their bound is charged less.
+            if is_settled {
+                caught.some[place] = 1;
+                caught.all[place] = 1;
+                continue;
+            }
             let named = named(&suspect, &key, ledger);
-            let guilty = &numbers[..row.num];
+            caught.trials += ledger.len() - row.num;
             let num_caught = named
                 .iter()
                 .filter(|number| guilty.contains(number))
                 .count();
             caught.some[place] = usize::from(num_caught > 0);
             caught.all[place] = usize::from(num_caught == row.num);
-            caught.innocents[place] = named.len() - num_caught;
+            caught.innocents += named.len() - num_caught;
+            is_settled = num_caught == row.num;
         }
         caught
     });

@@ -1,12 +1,15 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
 //! There are three modules, each with a feature and a contract of its own, so that a page that only marks and checks loads no
-//! study and no attack: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The package's
+//! study and no attack: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. A fourth has all of
+//! `marks.rs` and what sellers need beside, `copies.rs` with `copies.d.ts`. The package's
 //! tests hold the contracts to what is exported. What a call cannot do without are its arguments; all else is in one object, its
 //! last. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
 #[cfg(feature = "wasm-attacks")]
 mod attacks;
+#[cfg(feature = "wasm-copies")]
+mod copies;
 #[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 mod listener;
 #[cfg(feature = "wasm-marks")]

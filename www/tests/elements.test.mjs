@@ -31,7 +31,8 @@ before(async () => {
     const { pathname } = new URL(request.url, "http://localhost");
     const send = (type, body) => response.writeHead(200, { "Content-Type": type, "Content-Security-Policy": POLICY }).end(body);
     if (request.method === "POST") {
-      const chunks = await Array.fromAsync(request);
+      const chunks = [];
+      for await (const chunk of request) chunks.push(chunk);
       uploaded = await new Response(Buffer.concat(chunks), { headers: { "Content-Type": request.headers["content-type"] } }).formData();
       return send("text/html", "<!doctype html><title>thanks</title>");
     }
@@ -70,7 +71,7 @@ const heard = (frame, name) => frame.waitForFunction((name) => heard.find((event
 
 test("a model is marked before the form sends it", { timeout: 240_000 }, async () => {
   await page.goto(origin);
-  await page.getByRole("button").click();
+  await page.getByRole("button", { name: "Send" }).click();
   assert.equal(new URL(page.url()).pathname, "/", "nothing is sent before there is a model");
   const protect = page.locator("meshmark-protect");
   assert.equal(await protect.evaluate((element) => element.validity.valueMissing), true);
@@ -83,7 +84,7 @@ test("a model is marked before the form sends it", { timeout: 240_000 }, async (
   await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.embed(meshmark.demoModel(), "ADA-2", KEY).model));
   await heard(page, "meshmark-verdict");
   assert.match(await page.locator("meshmark-check").getByRole("status").textContent(), /^Your mark was found\./);
-  await page.getByRole("button").click();
+  await page.getByRole("button", { name: "Send" }).click();
   await page.waitForURL(`${origin}/upload`);
   const model = new Uint8Array(await uploaded.get("model").arrayBuffer());
   assert.equal(uploaded.get("model").name, "rock.glb");

@@ -4,8 +4,10 @@ use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::owner::Owner;
 use crate::report::Report;
+use crate::statement::StatementArgument;
 use crate::suspect::{Suspect, Telling};
 use clap::Args;
+use meshmark::Finding;
 use std::path::PathBuf;
 
 /// Read the mark of a key from a model, or from measured evidence
@@ -24,6 +26,8 @@ pub struct Extract {
     owner: Owner,
     #[command(flatten)]
     telling: Telling,
+    #[command(flatten)]
+    statement: StatementArgument,
 }
 
 impl Extract {
@@ -39,6 +43,10 @@ impl Extract {
             return self.telling.of_comparison(comparison, clock);
         }
         let extraction = self.suspect.examine(&key, None, &mut clock)?;
+        let repeated = format!("meshmark extract {}", self.suspect.arguments());
+        let finding = Finding::Reading(&extraction);
+        self.statement
+            .write(finding, self.suspect.path(), &key, &self.owner, &repeated)?;
         self.telling.of(extraction, clock)
     }
 }

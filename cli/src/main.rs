@@ -7,6 +7,7 @@ mod attack;
 mod attacks;
 mod capacity;
 mod clock;
+mod copies;
 mod embed;
 mod exit;
 mod extract;
@@ -14,16 +15,19 @@ mod failure;
 mod file;
 mod format;
 mod inspect;
+mod ledger;
 mod measure;
 mod note;
 mod output;
 mod owner;
 mod payload;
 mod report;
+mod statement;
 mod study;
 mod surface;
 mod suspect;
 mod test;
+mod trace;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -49,6 +53,8 @@ enum Command {
     Verify(verify::Verify),
     Measure(measure::Measure),
     Test(test::Test),
+    Copies(copies::Copies),
+    Trace(trace::Trace),
     /// Write a text into a model, or read it: up to 29 characters. A mark goes on top, so after the note
     #[command(subcommand)]
     Note(note::Note),
@@ -67,6 +73,8 @@ impl Command {
             Command::Verify(command) => command.run(),
             Command::Measure(command) => command.run(),
             Command::Test(command) => command.run(),
+            Command::Copies(command) => command.run(),
+            Command::Trace(command) => command.run(),
             Command::Note(command) => command.run(),
             Command::Attack(command) => command.run(),
             Command::Attacks(command) => command.run(),

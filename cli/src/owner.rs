@@ -24,9 +24,17 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// The owner's name, where it was given.
+    /// The owner's name, where the key comes from one.
     pub fn name(&self) -> Option<&str> {
         self.owner.as_deref()
+    }
+
+    /// What somebody has to say on the command line to give the same key: nothing of what is secret.
+    pub fn arguments(&self) -> String {
+        match &self.owner {
+            Some(owner) => format!("--owner {owner:?} --passphrase-file PASSPHRASE"),
+            None => "--key-file KEY".to_owned(),
+        }
     }
 
     pub fn key(&self) -> Result<Key, Failure> {

@@ -6,8 +6,8 @@ use crate::file::{load, load_text, open, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, compare, compare_with_record, detect,
-    extract, measure, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, compare, compare_with_record,
+    detect, extract, measure, trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -66,6 +66,28 @@ impl Suspect {
         let record = load_text(record)?;
         let suspect = open_suspect(&self.input)?;
         Ok(compare_with_record(suspect.suspect(clock), &record, key)?)
+    }
+
+    /// Says whose copies a model, or what was measured of one, was made of.
+    pub fn trace(&self, key: &Key, numbers: &[u64], clock: &mut Clock) -> Result<Tracing, Failure> {
+        if !self.evidence {
+            let found = open_suspect(&self.input)?;
+            return Ok(trace(found.suspect(clock), key, numbers)?);
+        }
+        let evidence = self.stored()?;
+        clock.start("test");
+        Ok(trace_evidence(&evidence, key, numbers)?)
+    }
+
+    /// What somebody has to say on the command line to read the same.
+    pub fn arguments(&self) -> String {
+        let evidence = if self.evidence { " --evidence" } else { "" };
+        format!("{}{evidence}", self.input.display())
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.input
     }
 
     /// The evidence, measured here where the suspect is a model.

@@ -722,3 +722,128 @@ fn cli_wraps_what_came_wrapped() {
     let (_, same, _) = here.run(&format!("embed model.glb b.glb --decompress {ADA} --tag A"));
     assert_eq!(plain["markedSha256"], same["markedSha256"]);
 }
+
+#[test]
+fn a_copy_for_each_buyer_is_traced_and_stated() {
+    let folder = Folder::new("copies");
+    let buyers = "name\n\"Grace, the first\"\n<script>alert(1)</script>\nLin\n";
+    fs::write(folder.path("buyers.csv"), buyers).unwrap();
+    let copies = format!("copies model.glb --ledger buyers.csv --out sold --date 2026-11-29 {ADA}");
+    let (code, made, _) = folder.run(&copies);
+    assert_eq!(code, 0);
+    assert_eq!(made["copies"].as_array().unwrap().len(), 3);
+    assert_eq!(made["copies"][1]["number"], 2);
+    assert_eq!(made["copies"][1]["file"], "model.2.glb");
+    assert_eq!(made["numWeaker"], 0);
+    let sha256 = made["copies"][1]["markedSha256"].as_str().unwrap();
+    let ledger = fs::read_to_string(folder.path("sold/ledger.csv")).unwrap();
+    let line = format!("2,<script>alert(1)</script>,model.2.glb,{sha256},2026-11-29");
+    assert!(ledger.lines().any(|other| other == line), "{ledger}");
+    assert!(ledger.contains("\"Grace, the first\""), "{ledger}");
+    // A ledger is not written over.
+    let (code, refused, _) = folder.run(&copies);
+    assert_eq!(code, 2);
+    assert!(
+        refused["error"]["message"]
+            .as_str()
+            .unwrap()
+            .contains("ledger.csv is there already")
+    );
+
+    let (code, _, _) = folder.run("attack sold/model.2.glb leaked.glb --step simplify.50");
+    assert_eq!(code, 2, "steps have a blank");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+    let attack = [
+        "attack",
+        "sold/model.2.glb",
+        "leaked.glb",
+        "--step",
+        "simplify 50",
+    ];
+    assert!(
+        command
+            .args(attack)
+            .current_dir(&folder.0)
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+    for ledger in ["sold/ledger.csv", "sold/ledger.json"] {
+        let trace =
+            format!("trace leaked.glb --ledger {ledger} --report report.html --date today {ADA}");
+        let (code, traced, _) = folder.run(&trace);
+        assert_eq!(code, 0, "{traced}");
+        assert_eq!(traced["traced"], "named");
+        assert_eq!(traced["numBuyers"], 3);
+        let buyers = traced["buyers"].as_array().unwrap();
+        assert_eq!(buyers.len(), 1);
+        assert_eq!(buyers[0]["number"], 2);
+        assert_eq!(buyers[0]["name"], "<script>alert(1)</script>");
+        assert!(buyers[0]["lnP"].as_f64().unwrap() < -20.8);
+    }
+    let report = fs::read_to_string(folder.path("report.html")).unwrap();
+    assert!(report.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+    assert!(report.contains("What this does not prove"));
+    assert!(report.contains("--ledger sold/ledger.json --owner &quot;Ada&quot;"));
+    assert!(report.contains("today"));
+    for active in [
+        "<script", "<img", "<link", "http://", "https://", "src=", "url(",
+    ] {
+        assert!(!report.contains(active), "{active}");
+    }
+    assert!(!report.contains("correct horse"));
+
+    // Of another key's marks nothing is said.
+    let other = "trace leaked.glb --ledger sold/ledger.csv --owner Ada --passphrase-file other.txt";
+    let (code, traced, _) = folder.run(other);
+    assert_eq!(code, 1);
+    assert_eq!(traced["traced"], "no-mark");
+    assert_eq!(traced["buyers"], json!([]));
+}
+
+#[test]
+fn ledgers_that_cannot_be_meant_are_refused() {
+    let folder = Folder::new("ledgers");
+    for (content, words) in [
+        ("Grace\nLin\n", "has to name its columns"),
+        ("number,name\n1,Grace\n1,Lin\n", "there twice"),
+        ("number,name\n1,Grace\n,Lin\n", "has no number"),
+        ("number\n-1\n", "damaged"),
+        ("number\n", "nobody is in it"),
+    ] {
+        fs::write(folder.path("buyers.csv"), content).unwrap();
+        let (code, refused, _) = folder.run(&format!("trace model.glb --ledger buyers.csv {ADA}"));
+        assert_eq!(code, 2);
+        let message = refused["error"]["message"].as_str().unwrap();
+        assert!(message.contains(words), "{content:?}: {message}");
+    }
+}
+
+#[test]
+fn a_reading_is_stated_too() {
+    let folder = Folder::new("statement");
+    let (code, _, _) = folder.run(&format!("embed model.glb marked.glb --tag ADA-1 {ADA}"));
+    assert_eq!(code, 0);
+    let extract = format!("extract marked.glb --report report.html --original model.glb {ADA}");
+    assert_eq!(folder.run(&extract).0, 0);
+    let report = fs::read_to_string(folder.path("report.html")).unwrap();
+    for words in [
+        "Your mark was found.",
+        "ADA-1",
+        "marked.glb",
+        "model.glb",
+        "less than 1 in 10^38",
+    ] {
+        assert!(report.contains(words), "{words}");
+    }
+    assert_eq!(
+        folder
+            .run(&format!("extract model.glb --report none.html {ADA}"))
+            .0,
+        1
+    );
+    let report = fs::read_to_string(folder.path("none.html")).unwrap();
+    assert!(report.contains("No evidence of this key."));
+    assert!(!report.contains("1 in 10"), "a number that follows the key");
+}

@@ -23,6 +23,7 @@ mod run;
 mod seed;
 mod study;
 mod surface;
+mod trace;
 mod wild;
 
 use clap::Parser;
@@ -82,6 +83,9 @@ struct Arguments {
     /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table.
     #[arg(long, value_name = "STRENGTH", conflicts_with_all = ["full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     informed: Option<String>,
+    /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
+    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    trace: bool,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -157,6 +161,10 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         };
         models.retain(|model| model.size <= most);
         return informed::table(&models, strength, &Seed::new(seed));
+    }
+    if arguments.trace {
+        let (models, _) = models::all(arguments.models.as_deref())?;
+        return trace::table(models, &Seed::new(seed));
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

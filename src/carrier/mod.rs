@@ -14,6 +14,7 @@ pub mod solid;
 pub use error::{CarrierError, StoredError};
 pub(crate) use error::{possible, take};
 pub use reading::{Hypothesis, Reading};
+pub use solid::{Choice, Chosen};
 pub use solid::{Frames, Place, Recorded, Seen, Way}; // reading with the original, which is SOLID's alone
 
 use crate::code::Codeword;
@@ -71,6 +72,20 @@ impl Carrier {
         match self {
             Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
+        }
+    }
+
+    /// A host, ready for any message under a key, as an embedding chose; none where it cannot hold one. RING's is ready whatever SOLID
+    /// does below it.
+    pub(crate) fn prepare(
+        self,
+        host: &Host,
+        key: &Key,
+        chosen: &[solid::Chosen],
+    ) -> Option<Prepared> {
+        match self {
+            Carrier::Solid => Some(Prepared::Solid(solid::Prepared::new(host, key, chosen))),
+            Carrier::Ring => ring::Prepared::new(host).ok().map(Prepared::Ring),
         }
     }
 
@@ -259,6 +274,8 @@ pub struct Embedded {
     pub exponent: f64,
     /// What that has to be.
     pub needs: Needs,
+    /// What was chosen for each frame, of SOLID's: with that another message is embedded more quickly.
+    pub chosen: Vec<solid::Chosen>,
 }
 
 /// Exponents that a mark needs, in nats.
@@ -290,6 +307,43 @@ impl Embedded {
     /// Whether it holds a payload, and stands what else happens to models.
     pub fn is_sturdy(&self) -> bool {
         self.exponent >= self.needs.sturdy
+    }
+}
+
+/// A host that is ready for further messages.
+pub(crate) enum Prepared {
+    /// SOLID's.
+    Solid(solid::Prepared),
+    /// RING's.
+    Ring(ring::Prepared),
+}
+
+impl Prepared {
+    /// Whose it is.
+    pub fn carrier(&self) -> Carrier {
+        match self {
+            Prepared::Solid(_) => Carrier::Solid,
+            Prepared::Ring(_) => Carrier::Ring,
+        }
+    }
+
+    /// What a key reads of a marked copy as it is, where a detector finds the mark at once.
+    pub fn read(&self, copy: &Mesh, key: &Key) -> Reading {
+        match self {
+            Prepared::Solid(_) => Carrier::Solid
+                .read_at_once(copy, key, &mut ignore)
+                .unwrap_or_default(),
+            Prepared::Ring(ring) => ring.read(copy, key),
+        }
+    }
+
+    /// The displacement of all V vertices of that host that gives it a mark, whatever it then holds: in few rounds, or in as many as an
+    /// embedding takes.
+    pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
+        match self {
+            Prepared::Solid(solid) => solid.again(host, mark, is_thorough),
+            Prepared::Ring(ring) => ring.again(host, mark, is_thorough),
+        }
     }
 }
 

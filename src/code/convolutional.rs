@@ -9,6 +9,7 @@
 //! O(steps * states * list).
 
 use super::{SoftSymbol, Symbol};
+use std::f64::consts::LN_2;
 
 /// Bits of a message: 48 of payload, 12 of check.
 pub const MESSAGE_BITS: u32 = 60;
@@ -79,7 +80,7 @@ pub fn complete(symbols: &[SoftSymbol], known: u64, num_known: u32) -> u64 {
 
 /// The metric of every register's inner bits at every step, where the first and the last bit are equal; where they differ it is
 /// the negative.
-struct Trellis(Vec<[f64; INNER]>);
+pub(super) struct Trellis(Vec<[f64; INNER]>);
 
 /// The states before a state: which is reached depends on the bit that left the register.
 fn before(state: usize) -> [usize; 2] {
@@ -96,7 +97,7 @@ struct Path {
 }
 
 impl Trellis {
-    fn new(symbols: &[SoftSymbol]) -> Trellis {
+    pub fn new(symbols: &[SoftSymbol]) -> Trellis {
         let mut steps = vec![[0.0; INNER]; STEPS];
         for soft in symbols {
             if let Symbol::Parity { step, taps } = soft.symbol {
@@ -106,6 +107,48 @@ impl Trellis {
         }
         steps.iter_mut().for_each(walsh_hadamard);
         Trellis(steps)
+    }
+
+    /// The sum of soft values times the signs of a codeword.
+    pub fn sum(&self, codeword: &Codeword) -> f64 {
+        let Codeword::Message(registers) = codeword else {
+            return 0.0;
+        };
+        let steps = registers.iter().zip(&self.0);
+        steps
+            .map(|(register, metrics)| {
+                let register = usize::from(*register);
+                let metric = metrics[register / 2 % INNER];
+                if (register ^ register >> MEMORY) & 1 == 0 {
+                    metric
+                } else {
+                    -metric
+                }
+            })
+            .sum()
+    }
+
+    /// The logarithm of the mean, over all messages, of `exp(exponent * sum)`: log domain, so that nothing overflows or is lost.
+    pub fn ln_moment(&self, exponent: f64) -> f64 {
+        let mut reached = [f64::NEG_INFINITY; STATES];
+        reached[0] = 0.0;
+        for (step, metrics) in self.0.iter().enumerate() {
+            let mut next = [f64::NEG_INFINITY; STATES];
+            let (low, high) = next.split_at_mut(INNER);
+            let is_message = step < MESSAGE_BITS as usize;
+            for (inner, from) in reached.as_chunks::<2>().0.iter().enumerate() {
+                let (metric, [a, b]) = (exponent * metrics[inner], *from);
+                low[inner] = ln_sum(a + metric, b - metric);
+                if is_message {
+                    high[inner] = ln_sum(a - metric, b + metric);
+                }
+            }
+            if is_message {
+                next.iter_mut().for_each(|reached| *reached -= LN_2);
+            }
+            reached = next;
+        }
+        reached[0]
     }
 
     /// The likeliest message that begins with the bits that are known.
@@ -177,6 +220,15 @@ impl Trellis {
             .map(|rank| trace(&layers, rank))
             .collect()
     }
+}
+
+/// The logarithm of the sum of two numbers that are given by theirs.
+fn ln_sum(a: f64, b: f64) -> f64 {
+    let (less, more) = if a < b { (a, b) } else { (b, a) };
+    if less == f64::NEG_INFINITY {
+        return more;
+    }
+    more + libm::log1p(libm::exp(less - more))
 }
 
 /// The larger of two metrics, and whether it is the second; the first wins ties.

@@ -3,11 +3,15 @@
 mod check;
 mod convolutional;
 mod ldpc;
+mod likeness;
+mod numbers;
 mod text;
 
 pub use check::{CHECK_BITS, Checked};
 pub use convolutional::{Codeword, MESSAGE_BITS, complete, decode};
 pub use ldpc::{Block, Decoded};
+pub use likeness::Likeness;
+pub use numbers::Numbers;
 pub use text::{TextCheck, TextError};
 
 /// What one address of a carrier says about the message.

@@ -4,6 +4,7 @@ use super::Parts;
 use super::facet::{Facet, twice_area};
 use crate::mesh::{Admissible, Mesh};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// What nobody is to see.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,8 +52,9 @@ const SHORTER: f64 = 0.75;
 const TIMES: usize = 12;
 
 /// How far the V vertices of a mesh may move.
+#[derive(Clone)]
 pub struct Leeway<'a> {
-    mesh: &'a Mesh,
+    mesh: Cow<'a, Mesh>,
     reaches: Vec<f64>,
     facets: Vec<Facet>,
     bounds: Bounds,
@@ -72,7 +74,7 @@ impl<'a> Leeway<'a> {
             Facet::of(mesh.corners(triangle), parts.diagonals[part as usize])
         };
         Leeway {
-            mesh,
+            mesh: Cow::Borrowed(mesh),
             reaches,
             facets: (mesh.triangles.iter().zip(&parts.of_triangles))
                 .map(facet)
@@ -87,6 +89,14 @@ impl<'a> Leeway<'a> {
         Leeway {
             reaches: vertices.iter().map(reach).collect(),
             ..Leeway::new(mesh, &Parts::new(mesh), self.bounds)
+        }
+    }
+
+    /// The same, which needs nobody else's memory.
+    pub fn into_owned(self) -> Leeway<'static> {
+        Leeway {
+            mesh: Cow::Owned(self.mesh.into_owned()),
+            ..self
         }
     }
 

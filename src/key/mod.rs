@@ -149,6 +149,13 @@ impl Key {
         Ok(key)
     }
 
+    /// What a key can be held to later: 32 hexadecimal digits that follow it, and say nothing of it to who cannot guess it. Who can guess the
+    /// passphrase can test the guess with them, at the cost of one derivation each.
+    pub fn commitment(&self) -> String {
+        let (high, low) = self.prf("commitment").at(0);
+        format!("{high:016x}{low:016x}")
+    }
+
     /// The 32 bytes, for a key file. The caller answers for what becomes of them.
     pub fn to_bytes(&self) -> Zeroizing<[u8; Key::BYTES]> {
         Zeroizing::new(self.0)

@@ -47,12 +47,6 @@ impl Key {
         self.cipher().decrypt(&Nonce::from(*nonce), payload).ok()
     }
 
-    /// 16 bytes that say whether something was made with this key, and nothing else of it.
-    #[doc(hidden)]
-    pub fn commitment(&self) -> [u8; 16] {
-        *self.expanded(b"record/commitment")
-    }
-
     fn cipher(&self) -> Aes256GcmSiv {
         let own = self.expanded::<32>(b"record/seal");
         Aes256GcmSiv::new(&(*own).into())

@@ -206,7 +206,7 @@ fn told(extraction: Extraction, is_for_owner: bool) -> Result<JsValue, JsValue> 
     })
 }
 
-fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
+pub(super) fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
     Key::from_bytes(bytes).map_err(Error::from).map_err(thrown)
 }
 
@@ -242,7 +242,7 @@ fn expected_from(options: &Options) -> Result<Option<Payload>, JsValue> {
 }
 
 /// Numbers by threes; a rest is refused.
-fn surface_from<'a>(
+pub(super) fn surface_from<'a>(
     positions: &'a [f64],
     triangles: &'a [u32],
 ) -> Result<(&'a [[f64; 3]], &'a [[u32; 3]]), JsValue> {
@@ -253,7 +253,7 @@ fn surface_from<'a>(
 }
 
 /// A model and its files.
-fn model_to(model: &[u8], files: &Files) -> Result<Object, JsValue> {
+pub(super) fn model_to(model: &[u8], files: &Files) -> Result<Object, JsValue> {
     let named = Object::new();
     for (name, bytes) in files {
         set(&named, name, &Uint8Array::from(bytes.as_slice()))?;
@@ -264,7 +264,7 @@ fn model_to(model: &[u8], files: &Files) -> Result<Object, JsValue> {
     Ok(result)
 }
 
-fn embed_options_from(given: &Options) -> Result<EmbedOptions, JsValue> {
+pub(super) fn embed_options_from(given: &Options) -> Result<EmbedOptions, JsValue> {
     let mut options = EmbedOptions::default();
     let strength = given.get("strength");
     if let Some(name) = strength.as_string() {

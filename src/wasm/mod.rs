@@ -1,12 +1,15 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
-//! There are four modules, each with a feature and a contract of its own, so that a page that only marks and checks loads nothing
-//! else: `marks.rs` with `types.d.ts`, `informed.rs` with `informed.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The package's
+//! There are five modules, each with a feature and a contract of its own, so that a page that only marks and checks loads nothing
+//! else: `marks.rs` with `types.d.ts`, `informed.rs` with `informed.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. A fifth has all of
+//! `marks.rs` and what sellers need beside, `copies.rs` with `copies.d.ts`. The package's
 //! tests hold the contracts to what is exported. What a call cannot do without are its arguments; all else is in one object, its
 //! last. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
 #[cfg(feature = "wasm-attacks")]
 mod attacks;
+#[cfg(feature = "wasm-copies")]
+mod copies;
 #[cfg(feature = "wasm-informed")]
 mod informed;
 #[cfg(any(

@@ -244,6 +244,92 @@ export interface MeshmarkErrorObject {
   path: string | null;
 }
 
+/** What `prepare` gives. */
+export interface Prepared {
+  /** The plan as bytes: the host, the key and what was chosen for it. It is as secret as the key. */
+  plan: Uint8Array;
+  /** Of the specimen, the copy with the number 0: what the mark of every copy is likely to survive. */
+  report: EmbedReport;
+}
+
+/** What a stamp did, and what was read back. */
+export interface StampReport {
+  number: number;
+  /** What `detect` reads of the copy as its `number`: the copy's own number, permuted by the key. */
+  payload: number;
+  movedVertices: number;
+  /** Displacement over all vertices, as fractions of the diagonal. */
+  rmsRel: number;
+  maxRel: number;
+  /** Pairs of triangles of one part that cut each other now, and neither did nor touched before: none. */
+  newIntersections: number;
+  /** Natural logarithm of the bound, read from the copy. */
+  lnP: number;
+  /** Whether that is less than three quarters of what the specimen reached. */
+  isWeaker: boolean;
+  markedSha256: string;
+}
+
+export interface Stamped {
+  model: Uint8Array;
+  /** The external buffers that changed. */
+  files: Files;
+  report: StampReport;
+}
+
+/** A file that a statement is about. */
+export interface StatedFile {
+  role: string;
+  name: string;
+  /** Its size. */
+  bytes: number;
+  sha256: string;
+}
+
+/** What a statement says beside the finding; every word is shown as text. */
+export interface StatementOptions {
+  owner?: string | undefined;
+  date?: string | undefined;
+  files?: StatedFile[] | undefined;
+  /** Command lines that repeat it. */
+  commands?: string[] | undefined;
+  /** What the ledger calls numbers. */
+  names?: Record<string, string> | undefined;
+}
+
+export interface TraceMeshOptions extends MeasureMeshOptions {
+  /** Default: no statement. */
+  statement?: StatementOptions | undefined;
+}
+
+export interface TraceOptions extends MeasureOptions {
+  /** Default: no statement. */
+  statement?: StatementOptions | undefined;
+}
+
+export interface StateReadingOptions extends MeasureOptions {
+  statement: StatementOptions;
+}
+
+/** Whose copies a suspect was made of. */
+export interface Tracing {
+  /**
+   * `named`: for any buyer who had no part in it the chance to be among `buyers` is at most 1e-9. `nobody`: a mark of this key is there, and
+   * no copy of the ledger can be told from it. `no-mark`: no evidence of this key. `cannot-check`: the model has too little geometry.
+   */
+  traced: "named" | "nobody" | "no-mark" | "cannot-check";
+  sentence: string;
+  /** The most certain first; `lnP` has every buyer and way of reading charged. */
+  buyers: { number: number; lnP: number }[];
+  numBuyers: number;
+  numWays: number;
+  lnCharge: number;
+  /** What is read with the key alone. */
+  reading: Extraction;
+  /** One HTML file without scripts, where it was asked for. */
+  statement?: string;
+}
+
 /** 32 bytes from an owner's name and passphrase: Argon2id, see docs/FORMAT.md. Takes tenths of a second by design. */
 export function deriveKey(owner: string, passphrase: string): Uint8Array;
 

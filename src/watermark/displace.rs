@@ -1,7 +1,7 @@
 //! Displacing: the mark in every carrier that suits a host, and back into the file.
 
 use super::{EmbedOptions, Error, Model};
-use crate::carrier::{Carrier, CarrierError, Host, Mark};
+use crate::carrier::{Carrier, CarrierError, Chosen, Host, Mark, Prepared};
 use crate::document::Document;
 use crate::geometry::{Distortion, Leeway, Parts, cuts};
 use crate::mesh::{Admissible, Mesh};
@@ -9,7 +9,14 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use glam::DVec3;
 
-/// The displacement that gives the host the mark, in every carrier that it suits.
+/// A carrier that holds a mark, and what it chose for that.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Used {
+    pub carrier: Carrier,
+    pub chosen: Vec<Chosen>,
+}
+
+/// The displacement that gives the host the mark, in every carrier that it suits, and which these are.
 pub(super) fn displacement(
     scene: &Scene,
     leeway: &Leeway,
@@ -17,17 +24,65 @@ pub(super) fn displacement(
     has_payload: bool,
     options: &EmbedOptions,
     progress: &mut dyn Progress,
-) -> Result<Vec<DVec3>, Error> {
-    let mesh = displaced(scene, leeway, mark, has_payload, options, progress)?;
+) -> Result<(Vec<DVec3>, Vec<Used>), Error> {
+    let (mesh, used) = displaced(scene, leeway, mark, has_payload, options, progress)?;
+    Ok((within_limit(scene, &mesh, options), used))
+}
+
+/// The same as it was done before, with another message.
+pub(super) fn displacement_again(
+    scene: &Scene,
+    leeway: &Leeway,
+    mark: &Mark,
+    prepared: &[Prepared],
+    options: &EmbedOptions,
+    is_thorough: bool,
+) -> Vec<DVec3> {
+    let mut mesh = scene.mesh.clone();
+    for carrier in prepared {
+        let displacement = carrier.again(&host(scene, &mesh, leeway, options), mark, is_thorough);
+        mesh.displace(&displacement);
+    }
+    within_limit(scene, &mesh, options)
+}
+
+/// From the scene's mesh to the displaced one, within the limit.
+fn within_limit(scene: &Scene, mesh: &Mesh, options: &EmbedOptions) -> Vec<DVec3> {
     // Each carrier keeps to a limit of its own: together they exceed the whole's by a few percent, which quantizers do not
     // notice.
     let limit = options.strength.rms_rel();
     let taken = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
     let scale = if taken > limit { limit / taken } else { 1.0 };
     let pairs = mesh.positions.iter().zip(&scene.mesh.positions);
-    Ok(pairs
+    pairs
         .map(|(marked, host)| (*marked - *host) * scale)
-        .collect())
+        .collect()
+}
+
+/// What a carrier is given: the scene's mesh, displaced by those before it.
+pub(super) fn host<'a>(
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    leeway: &'a Leeway,
+    options: &EmbedOptions,
+) -> Host<'a> {
+    let limit = options.strength.rms_rel();
+    let is_first = *mesh == scene.mesh;
+    let rms_rel = if is_first {
+        limit
+    } else {
+        // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
+        let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
+        (below * limit).sqrt() * Carrier::SHARE_ON_TOP
+    };
+    Host {
+        mesh,
+        leeway,
+        admissible: &scene.admissible,
+        rms_rel,
+        hidden: options.strength.is_hidden(),
+        on_top: !is_first,
+    }
 }
 
 /// The host's mesh with the mark in it, in every carrier that it suits.
@@ -38,40 +93,30 @@ fn displaced(
     has_payload: bool,
     options: &EmbedOptions,
     progress: &mut dyn Progress,
-) -> Result<Mesh, Error> {
-    let limit = options.strength.rms_rel();
+) -> Result<(Mesh, Vec<Used>), Error> {
     let mut mesh = scene.mesh.clone();
     // Marks that are not sturdy, and what was refused.
     let (mut weak, mut refusals) = (Vec::new(), Vec::new());
+    let mut used = Vec::new();
     for carrier in Carrier::ALL {
         if !options.carriers.contains(&carrier) {
             continue;
         }
-        let is_first = mesh == scene.mesh;
-        let rms_rel = if is_first {
-            limit
-        } else {
-            // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
-            let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
-            (below * limit).sqrt() * Carrier::SHARE_ON_TOP
-        };
-        let host = Host {
-            mesh: &mesh,
-            leeway,
-            admissible: &scene.admissible,
-            rms_rel,
-            hidden: options.strength.is_hidden(),
-            on_top: !is_first,
-        };
-        match carrier.embed(&host, mark, progress) {
-            Ok(embedded) if embedded.is_sturdy() => mesh.displace(&embedded.displacement),
+        match carrier.embed(&host(scene, &mesh, leeway, options), mark, progress) {
+            Ok(embedded) if embedded.is_sturdy() => {
+                mesh.displace(&embedded.displacement);
+                used.push(Used {
+                    carrier,
+                    chosen: embedded.chosen,
+                });
+            }
             Ok(embedded) => weak.push(embedded),
             Err(CarrierError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(refusal) => refusals.push(refusal),
         }
     }
     if mesh != scene.mesh {
-        return Ok(mesh);
+        return Ok((mesh, used));
     }
     let best = weak
         .into_iter()
@@ -86,7 +131,11 @@ fn displaced(
         return Err(best.without_payload().into());
     }
     mesh.displace(&best.displacement);
-    Ok(mesh)
+    let used = Used {
+        carrier: best.carrier,
+        chosen: best.chosen,
+    };
+    Ok((mesh, vec![used]))
 }
 
 /// What was written of a scene's vertices.

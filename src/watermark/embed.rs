@@ -2,7 +2,7 @@
 
 use super::error::Advice;
 use super::forecast::{forecast, is_fragile};
-use super::marking::{Held, Marked, WITHOUT_PAYLOAD, hold};
+use super::marking::{Held, Marked, Recipe, WITHOUT_PAYLOAD, hold};
 use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
 use crate::bits::Payload;
 use crate::digest::sha256;
@@ -38,15 +38,16 @@ pub fn embed<'a>(
     key: &Key,
     options: &EmbedOptions,
 ) -> Result<Embedding, Error> {
-    embed_in(model.into(), payload, key, options)
+    embed_in(model.into(), payload, key, options).map(|(embedding, _)| embedding)
 }
 
-fn embed_in(
+/// The same, and how it was done.
+pub(super) fn embed_in(
     mut model: Model,
     payload: Payload,
     key: &Key,
     options: &EmbedOptions,
-) -> Result<Embedding, Error> {
+) -> Result<(Embedding, Recipe), Error> {
     if options.carriers.is_empty() {
         return Err(Error::NoCarrier);
     }
@@ -61,6 +62,7 @@ fn embed_in(
                 unshown,
                 strays,
                 num_cuts,
+                recipe,
             },
         read_back,
     } = match hold(&mut model, payload, key, options) {
@@ -98,11 +100,12 @@ fn embed_in(
         host_sha256: sha256(model.bytes),
         marked_sha256: sha256(&written.model),
     };
-    Ok(Embedding {
+    let embedding = Embedding {
         model: written.model,
         files: written.files,
         report,
-    })
+    };
+    Ok((embedding, recipe))
 }
 
 /// A refusal, with what would help: that is tried. Where the file's numbers are too coarse, they are the reason.

@@ -65,6 +65,37 @@ impl RecordError {
     }
 }
 
+/// The version of plans that is written and read.
+pub(super) const PLAN_VERSION: u16 = 1;
+
+/// Why bytes are not a plan.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// Something else.
+    #[error("this is not a plan for copies")]
+    NotPlan,
+    /// A plan of another version.
+    #[error(
+        "this plan was made by another version (format {0}); this one reads format {PLAN_VERSION}: prepare the model again"
+    )]
+    Version(u16),
+    /// Cut short or damaged.
+    #[error("the plan is damaged: prepare the model again")]
+    Damaged,
+}
+
+impl PlanError {
+    /// The stable code of this error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            PlanError::NotPlan => "plan.not-plan",
+            PlanError::Version(_) => "plan.version",
+            PlanError::Damaged => "plan.damaged",
+        }
+    }
+}
+
 /// Why nothing was embedded, measured or read. "No mark found" is a result, not an error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -93,6 +124,9 @@ pub enum Error {
     /// The record cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// The plan cannot be read.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// A strength outside its range.
     #[error(
         "strength is a fraction of the diagonal from 0.00001 to 0.01, or subtle, balanced or strong; not {0}"
@@ -104,6 +138,9 @@ pub enum Error {
     /// No carrier was chosen.
     #[error("no carrier was chosen")]
     NoCarrier,
+    /// The model holds a mark without a payload only.
+    #[error("the model is too small to hold a number, so its copies cannot be told apart")]
+    NoCopies,
     /// The marked model was read back, and its mark was not found: nothing was written.
     #[error(
         "the mark could not be read back from the marked model, so nothing was returned{}",
@@ -153,8 +190,10 @@ impl Error {
             Error::Text(error) => error.code(),
             Error::Evidence(error) => error.code(),
             Error::Record(error) => error.code(),
+            Error::Plan(error) => error.code(),
             Error::Strength(_) => "options.strength",
             Error::MaxMovement(_) => "options.max-movement",
+            Error::NoCopies => "copies.no-number",
             Error::NoCarrier => "options.no-carrier",
             Error::Unreadable { .. } => "watermark.unreadable",
             Error::Refused { refusal, .. } => refusal.code(),

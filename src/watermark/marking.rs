@@ -1,6 +1,6 @@
 //! Marking: read, displace, write, and read back as any detector would.
 
-use super::displace::{Moved, displacement, write};
+use super::displace::{Moved, Used, displacement, write};
 use super::read_back::{is_read, is_seen_at_once};
 use super::report::Unshown;
 use super::unshown::mark_unshown;
@@ -80,6 +80,15 @@ pub(super) struct Marked {
     pub strays: Option<String>,
     /// Pairs of triangles that cut each other and did not before.
     pub num_cuts: usize,
+    pub recipe: Recipe,
+}
+
+/// How a model was marked: what another message needs no search for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Recipe {
+    pub shown: Vec<Used>,
+    /// By the meshes' places in the file.
+    pub unshown: Vec<(usize, Vec<Used>)>,
 }
 
 /// Reads, displaces and writes.
@@ -105,7 +114,8 @@ fn mark(
     };
     let parts = scene.parts();
     let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);
-    let displacement = displacement(&scene, &leeway, &mark, payload.is_some(), options, model)?;
+    let (displacement, shown) =
+        displacement(&scene, &leeway, &mark, payload.is_some(), options, model)?;
 
     model.step(Stage::Write, 0.0)?;
     let Moved {
@@ -114,7 +124,8 @@ fn mark(
         ..
     } = write(model, &mut document, &scene, &parts, &leeway, displacement)?;
     drop(leeway);
-    let unshown = mark_unshown(model, &mut document, &scene, &mark, payload, options)?;
+    let (unshown, of_unshown) =
+        mark_unshown(model, &mut document, &scene, &mark, payload, options)?;
     let strays = scene.strays_in_words();
     let host = scene.mesh;
     let written = document.write()?;
@@ -129,5 +140,9 @@ fn mark(
         unshown,
         strays,
         num_cuts,
+        recipe: Recipe {
+            shown,
+            unshown: of_unshown,
+        },
     })
 }

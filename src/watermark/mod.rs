@@ -2,6 +2,7 @@
 
 mod capacity;
 mod compare;
+mod copies;
 mod displace;
 mod embed;
 mod error;
@@ -13,17 +14,21 @@ mod marking;
 mod model;
 mod note;
 mod options;
+mod plan;
 mod read_back;
 mod record;
 mod report;
+mod statement;
 mod suspect;
+mod trace;
 mod unshown;
 mod weigh;
 
 pub use capacity::{Capacity, Holds, capacity};
 pub use compare::compare;
+pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
-pub use error::{Advice, Error, RecordError};
+pub use error::{Advice, Error, PlanError, RecordError};
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
@@ -38,4 +43,6 @@ pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
     Shape, Unshown, Verdict, Witness,
 };
+pub use statement::{Finding, StatedFile, Statement};
 pub use suspect::{Surface, Suspect};
+pub use trace::{Buyer, Traced, Tracing, trace, trace_evidence};

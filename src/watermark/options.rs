@@ -104,6 +104,14 @@ impl Strength {
         }
     }
 
+    /// A strength as a plan holds it.
+    pub(super) fn stored(rms_rel: f64, hidden: bool) -> Result<Strength, Error> {
+        Ok(Strength {
+            hidden,
+            ..Strength::new(rms_rel)?
+        })
+    }
+
     /// A preset by its name: subtle, balanced or strong.
     pub fn from_name(name: &str) -> Option<Strength> {
         match name {

@@ -148,7 +148,7 @@ pub(crate) fn record_of(
         strength: marking.strength,
         host_sha256: marking.host_sha256.clone(),
         marked_sha256: marking.marked_sha256.clone(),
-        key_commitment: hex(&key.commitment()),
+        key_commitment: key.commitment(),
     };
     let sealed = STANDARD.encode(key.seal(&plain, &clear.bytes()));
     let stored = Stored { clear, sealed };
@@ -236,7 +236,7 @@ fn opened(record: &str, key: &Key) -> Result<(Shape, Recorded), RecordError> {
     if clear.version != VERSION {
         return Err(RecordError::Version(clear.version));
     }
-    if clear.key_commitment != hex(&key.commitment()) {
+    if clear.key_commitment != key.commitment() {
         return Err(RecordError::OtherKey);
     }
     let sealed = STANDARD.decode(&stored.sealed);
@@ -349,13 +349,4 @@ impl Shape {
             false => Err(StoredError::Damaged),
         }
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    let mut text = String::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        let _ = write!(text, "{byte:02x}"); // strings take what is written
-    }
-    text
 }

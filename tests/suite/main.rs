@@ -8,6 +8,7 @@ mod attack;
 // a hundred thousand keys, and nothing that differs between targets
 mod bound;
 mod code;
+mod copies;
 mod curvature;
 mod detection;
 mod direction;
@@ -39,5 +40,6 @@ mod solid;
 mod support;
 mod suspects;
 mod text;
+mod trace;
 mod watermark;
 mod wild;

@@ -4,9 +4,10 @@ import { before, test } from "node:test";
 import * as facade from "meshmark";
 import * as glue from "../meshmark/wasm/meshmark.js";
 import { readContract } from "./shape.mjs";
-import { caught, contractFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { caught, contractFile, copiesFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 const contract = readContract(contractFile);
+const copies = readContract(copiesFile);
 
 before(() => facade.init());
 
@@ -22,7 +23,7 @@ test("each function takes the declared number of arguments", () => {
 });
 
 test("the package exports the same functions, init and its error", () => {
-  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), "init", "initCodecs", "MeshmarkError"].sort());
+  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), ...copies.functions.keys(), "init", "initCodecs", "initCopies", "MeshmarkError"].sort());
 });
 
 test("real results have exactly the declared shapes", () => {
@@ -47,6 +48,34 @@ test("real results have exactly the declared shapes", () => {
   assert.ok(key instanceof Uint8Array && key.length === 32);
   assert.ok(evidence instanceof Uint8Array);
   assert.equal(typeof facade.version(), "string");
+});
+
+test("copies and tracings have the declared shapes, and their calls the declared arguments and options", async () => {
+  await facade.initCopies();
+  const glue = await import("../meshmark/wasm-copies/copies.js");
+  const exported = Object.keys(glue).filter((name) => !LOADING.includes(name));
+  assert.deepEqual(exported.sort(), [...contract.functions.keys(), ...copies.functions.keys()].sort());
+  for (const [name, parameters] of copies.functions) {
+    assert.equal(glue[name].length, parameters, name);
+  }
+  const [model, key] = [facade.demoModel(), new Uint8Array(32).fill(1)];
+  const prepared = facade.prepare(model, key);
+  assert.deepEqual(contract.differences("Prepared", prepared), []);
+  const stamped = facade.stamp(prepared.plan, 1);
+  assert.deepEqual(contract.differences("Stamped", stamped), []);
+  const numbers = Float64Array.of(1, 2);
+  assert.deepEqual(contract.differences("Tracing", facade.trace(stamped.model, key, numbers, { statement: {} })), []);
+  assert.deepEqual(contract.differences("Tracing", facade.trace(model, key, numbers)), []);
+  const calls = {
+    EmbedOptions: (options) => facade.prepare(model, key, options),
+    TraceOptions: (options) => facade.trace(model, key, numbers, options),
+    TraceMeshOptions: (options) => facade.traceMesh(new Float64Array(9), new Uint32Array(3), key, numbers, options),
+    StateReadingOptions: (options) => facade.stateReading(model, key, options),
+  };
+  for (const [type, call] of Object.entries(calls)) {
+    const { message } = caught(() => call({ other: 1 }));
+    assert.deepEqual(/^there is no option "other"; there are (.*)$/.exec(message)?.[1].split(", ").sort(), contract.properties(type).sort(), type);
+  }
 });
 
 test("each call takes every option that is declared for it, and no other", () => {

@@ -7,15 +7,19 @@
 
 use super::address::{self, AddressKind, Turn};
 use super::feature::{Features, Neighbourhoods};
+use super::measurement::read_at;
 use super::{Measurement, Owned, Ownership, SHARE, STEP};
 use crate::carrier::qim::curvature;
-use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs};
+use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs, Reading};
 use crate::geometry::{Pose, conjugate_gradients, diagonal, unconditioned, vertex_normals};
+use crate::key::Key;
 use crate::mesh::Mesh;
-use crate::progress::{Progress, Stage, step};
+use crate::progress::{Cancelled, Progress, Stage, ignore, step};
 use glam::DVec3;
 
 const ROUNDS: usize = 6;
+/// Rounds of a further message.
+const ROUNDS_AGAIN: usize = 3;
 const CG_STEPS: usize = 60;
 const CG_TOLERANCE: f64 = 1e-3;
 /// Weight of a vertex's own displacement, in units of its ring's size, against errors in units of the feature.
@@ -38,7 +42,7 @@ pub fn embed(
     mark: &Mark,
     progress: &mut dyn Progress,
 ) -> Result<Embedded, CarrierError> {
-    let displacement = displacement(host, mark, progress)?;
+    let displacement = Prepared::new(host)?.displacement(host, mark, ROUNDS, progress)?;
     let reached = exponent(host, mark, &displacement);
     step(progress, Stage::Embed, 1.0)?;
     if reached < NEEDS.presence {
@@ -53,83 +57,133 @@ pub fn embed(
         carrier: Carrier::Ring,
         exponent: reached,
         needs: NEEDS,
+        chosen: Vec::new(),
     })
 }
 
-fn displacement(
-    host: &Host,
-    mark: &Mark,
-    progress: &mut dyn Progress,
-) -> Result<Vec<DVec3>, CarrierError> {
-    let positions = &host.mesh.positions;
-    let neighbourhoods = Neighbourhoods::new(host.mesh);
-    let features = Features::new(positions, &neighbourhoods);
-    let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
-    let by_geometry = address::by_geometry(positions, &neighbourhoods, &features);
-    let instances = host.admissible.instances(positions.len());
-    let (kind, available) = address::choose(
-        host.mesh,
-        &by_connectivity,
-        &by_geometry,
-        &features.usable,
-        &instances,
-    );
-    // Addresses by position survive nothing that SOLID does not.
-    let adds_nothing = host.on_top && matches!(kind, AddressKind::Position(_));
-    let needed = NEEDS.presence as usize * SHARE as usize;
-    if available < needed || adds_nothing {
-        return Err(CarrierError::TooFewAddresses {
-            carrier: Carrier::Ring,
-            needed,
-            available,
-            vertices: positions.len(),
-        });
+/// A host, ready for any message under any key: what stays as it is while vertices move a little.
+pub struct Prepared {
+    neighbourhoods: Neighbourhoods,
+    by_connectivity: Vec<u64>,
+    /// Which vertices are instances of one.
+    instances: Vec<u32>,
+    kind: AddressKind,
+}
+
+impl Prepared {
+    /// Looks at a host.
+    ///
+    /// # Errors
+    /// Where it has too few addresses.
+    pub fn new(host: &Host) -> Result<Prepared, CarrierError> {
+        let positions = &host.mesh.positions;
+        let neighbourhoods = Neighbourhoods::new(host.mesh);
+        let features = Features::new(positions, &neighbourhoods);
+        let by_connectivity = address::by_connectivity(&neighbourhoods.rings);
+        let by_geometry = address::by_geometry(positions, &neighbourhoods, &features);
+        let instances = host.admissible.instances(positions.len());
+        let (kind, available) = address::choose(
+            host.mesh,
+            &by_connectivity,
+            &by_geometry,
+            &features.usable,
+            &instances,
+        );
+        // Addresses by position survive nothing that SOLID does not.
+        let adds_nothing = host.on_top && matches!(kind, AddressKind::Position(_));
+        let needed = NEEDS.presence as usize * SHARE as usize;
+        if available < needed || adds_nothing {
+            return Err(CarrierError::TooFewAddresses {
+                carrier: Carrier::Ring,
+                needed,
+                available,
+                vertices: positions.len(),
+            });
+        }
+        Ok(Prepared {
+            neighbourhoods,
+            by_connectivity,
+            instances,
+            kind,
+        })
     }
 
-    let normals = vertex_normals(host.mesh);
-    let pose = Pose::of(host.mesh);
-    let limit = host.rms_rel * diagonal(positions);
-    let ownership = Ownership::of(mark.key);
-    let linear = Linearization::new(&neighbourhoods, features, &normals, &host.admissible.fixed);
-    let mut displacement = vec![DVec3::ZERO; positions.len()];
-    for round in 0..ROUNDS {
-        step(progress, Stage::Embed, round as f64 / ROUNDS as f64)?;
-        let moved: Vec<DVec3> = positions
-            .iter()
-            .zip(&displacement)
-            .map(|(p, d)| *p + *d)
-            .collect();
-        let now = Features::new(&moved, &neighbourhoods);
-        let addresses = match kind {
-            AddressKind::Connectivity => &by_connectivity,
-            AddressKind::Geometry => &address::by_geometry(&moved, &neighbourhoods, &now),
-            AddressKind::Position(turn) => {
-                &by_position(&host.mesh.with_positions(moved), pose.as_ref(), turn)
-            }
-        };
-        let along: Vec<f64> = displacement
-            .iter()
-            .zip(&normals)
-            .map(|(d, n)| d.dot(*n))
-            .collect();
-        let carriers = address::carriers(addresses, &now.usable, &instances);
-        let goals = carriers.into_iter().filter_map(|vertex| {
-            let vertex = vertex as usize;
-            let owned = ownership.get(addresses[vertex])?;
-            Some(linear.goal(vertex, now.offsets[vertex], &owned, mark, &along))
-        });
-        let solution = linear.solve(&goals.collect::<Vec<_>>());
-        displacement = solution
-            .iter()
-            .zip(&normals)
-            .map(|(length, normal)| *normal * length.clamp(-CLAMP * limit, CLAMP * limit))
-            .collect();
-        host.admissible.project(&mut displacement);
-        scale_to_rms(&mut displacement, limit);
-        host.leeway
-            .keep(positions, &mut displacement, host.admissible);
+    /// The displacement that gives the host, or one whose vertices are a little elsewhere, a mark.
+    pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
+        let rounds = if is_thorough { ROUNDS } else { ROUNDS_AGAIN };
+        let displacement = self.displacement(host, mark, rounds, &mut ignore);
+        displacement.unwrap_or_default() // what ignores progress is not cancelled
     }
-    Ok(displacement)
+
+    /// What a key reads of a mesh that differs from the host in a little displacement: no other kind of address is looked at.
+    pub fn read(&self, mesh: &Mesh, key: &Key) -> Reading {
+        let positions = &mesh.positions;
+        let features = Features::new(positions, &self.neighbourhoods);
+        match self.kind {
+            AddressKind::Connectivity => read_at(&features, &self.by_connectivity, key),
+            AddressKind::Geometry => {
+                let addresses = address::by_geometry(positions, &self.neighbourhoods, &features);
+                read_at(&features, &addresses, key)
+            }
+            AddressKind::Position(_) => Measurement::new(mesh).read(key),
+        }
+    }
+
+    fn displacement(
+        &self,
+        host: &Host,
+        mark: &Mark,
+        rounds: usize,
+        progress: &mut dyn Progress,
+    ) -> Result<Vec<DVec3>, Cancelled> {
+        let positions = &host.mesh.positions;
+        let (neighbourhoods, kind) = (&self.neighbourhoods, self.kind);
+        let features = Features::new(positions, neighbourhoods);
+        let normals = vertex_normals(host.mesh);
+        let pose = Pose::of(host.mesh);
+        let limit = host.rms_rel * diagonal(positions);
+        let ownership = Ownership::of(mark.key);
+        let linear = Linearization::new(neighbourhoods, features, &normals, &host.admissible.fixed);
+        let mut displacement = vec![DVec3::ZERO; positions.len()];
+        for round in 0..rounds {
+            step(progress, Stage::Embed, round as f64 / rounds as f64)?;
+            let moved: Vec<DVec3> = positions
+                .iter()
+                .zip(&displacement)
+                .map(|(p, d)| *p + *d)
+                .collect();
+            let now = Features::new(&moved, neighbourhoods);
+            let addresses = match kind {
+                AddressKind::Connectivity => &self.by_connectivity,
+                AddressKind::Geometry => &address::by_geometry(&moved, neighbourhoods, &now),
+                AddressKind::Position(turn) => {
+                    &by_position(&host.mesh.with_positions(moved), pose.as_ref(), turn)
+                }
+            };
+            let along: Vec<f64> = displacement
+                .iter()
+                .zip(&normals)
+                .map(|(d, n)| d.dot(*n))
+                .collect();
+            let carriers = address::carriers(addresses, &now.usable, &self.instances);
+            let goals = carriers.into_iter().filter_map(|vertex| {
+                let vertex = vertex as usize;
+                let owned = ownership.get(addresses[vertex])?;
+                Some(linear.goal(vertex, now.offsets[vertex], &owned, mark, &along))
+            });
+            let solution = linear.solve(&goals.collect::<Vec<_>>());
+            displacement = solution
+                .iter()
+                .zip(&normals)
+                .map(|(length, normal)| *normal * length.clamp(-CLAMP * limit, CLAMP * limit))
+                .collect();
+            host.admissible.project(&mut displacement);
+            scale_to_rms(&mut displacement, limit);
+            host.leeway
+                .keep(positions, &mut displacement, host.admissible);
+        }
+        Ok(displacement)
+    }
 }
 
 /// What a detector reads.

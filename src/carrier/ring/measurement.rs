@@ -144,6 +144,38 @@ impl Measurement {
     }
 }
 
+/// What a key reads of rings at addresses of one kind, which are known: as if all had been measured, and the others said nothing.
+pub fn read_at(features: &Features, addresses: &[u64], key: &Key) -> Reading {
+    let sample = |&v: &u32| Sample {
+        by_connectivity: addresses[v as usize],
+        by_geometry: 0,
+        cell: [0; 3],
+        offset: features.offsets[v as usize] as f32,
+    };
+    let samples: Vec<Sample> = features.usable.iter().map(sample).collect();
+    let phasors: Vec<Phasor> = samples.iter().map(Phasor::new).collect();
+    let rings = Rings {
+        samples: &samples,
+        phasors: &phasors,
+    };
+    let sums = rings.sums(
+        &rings.groups(|sample| sample.by_connectivity),
+        f32::INFINITY,
+    );
+    let ownership = Ownership::of(key);
+    Reading {
+        num_addresses: sums.len(),
+        hypotheses: vec![Hypothesis {
+            symbols: sums.iter().filter_map(|sum| sum.read(&ownership)).collect(),
+            ln_num_tests: libm::log(NUM_HYPOTHESES as f64),
+            piece: 0,
+        }],
+    }
+}
+
+/// Two kinds of address in all cuts, and all turns of the frame.
+const NUM_HYPOTHESES: usize = 2 * CUTS.len() + Turn::ALL.len();
+
 /// All rings of a mesh.
 fn samples(mesh: &Mesh) -> Vec<Sample> {
     let neighbourhoods = Neighbourhoods::new(mesh);

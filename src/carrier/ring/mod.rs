@@ -23,7 +23,7 @@ mod feature;
 mod measurement;
 mod trace;
 
-pub use embed::embed;
+pub use embed::{Prepared, embed};
 pub use measurement::Measurement;
 pub use trace::{Ring, rings, trace};
 

@@ -276,7 +276,7 @@ impl<'a> Response<'a> {
             freedom,
             ..
         } = frame;
-        let mut problem = Problem::new(mesh, pose, placement, active, freedom);
+        let problem = Problem::new(mesh, pose, placement, active, freedom);
         let weights: Vec<f64> = active.iter().map(|window| window.weight).collect();
         let step = STEPS[0] / placement.pitch;
         let from_lattice = pose.axes * placement.rotation * (pose.size * placement.pitch);
@@ -288,8 +288,9 @@ impl<'a> Response<'a> {
             .map(|_| (random.unit() - 0.5) * step)
             .collect();
         let mut ridge = problem.mean_diagonal();
+        let mut multipliers = vec![0.0; active.len()];
         for _ in 0..ROUNDS {
-            let solution = problem.solve(&goals, &weights, ridge);
+            let solution = problem.solve(&goals, &weights, ridge, &mut multipliers);
             let squares = solution.iter().zip(freedom).map(|(x, freedom)| {
                 let share = if hidden { freedom / typical } else { 1.0 };
                 (from_lattice * *x).length_squared() / (share * share)

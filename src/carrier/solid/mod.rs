@@ -15,8 +15,10 @@
 //! | `quantizer` | how a flux holds a symbol |
 //! | `freedom` | embedding: how far each vertex may move unseen |
 //! | `lists`, `moments`, `problem` | embedding: the linear problem of one round |
-//! | `embed` | embedding: the displacement |
+//! | `rounds` | embedding: the displacement |
+//! | `embed` | embedding: which pitch, step and limit hold the mark |
 //! | `objects` | embedding: each object of a scene in its own frame |
+//! | `again` | embedding: another message where one was embedded before |
 //! | `store` | a surface's clusters in few bytes |
 //! | `strength` | smoothings that may have happened, and what lies between those that are undone |
 //! | `surface`, `surfaces` | detecting: what a suspect is, and may have been |
@@ -31,6 +33,7 @@
 //!
 //! The method and its constants are this project's own (docs/REFERENCES.md, "SOLID"). QIM with dither: Chen and Wornell 2001.
 
+mod again;
 mod cluster;
 mod embed;
 mod field;
@@ -49,6 +52,7 @@ mod quantizer;
 mod reading;
 mod recorded;
 mod refine;
+mod rounds;
 mod scan;
 mod search;
 mod store;
@@ -58,10 +62,12 @@ mod surface;
 mod surfaces;
 mod window;
 
+pub use again::Prepared;
 pub use frame::has_axes;
 pub use informed::{Frames, Place, Seen, Way};
 pub use measurement::{Measurement, Suspect, piece};
-pub use objects::embed;
+pub use objects::{Chosen, embed};
 pub use recorded::Recorded;
+pub use rounds::Choice;
 pub use surface::Surface;
 pub use surfaces::Surfaces;

@@ -1,7 +1,8 @@
 //! Embedding in a scene: each of its objects has the mark in its own frame, and keeps it when it is taken out.
 
-use super::embed::embed_in_frame;
+use super::embed::{InFrame, embed_in_frame};
 use super::frame::has_axes;
+use super::rounds::Choice;
 use crate::carrier::{Carrier, CarrierError, Embedded, Host, Mark, Needs};
 use crate::geometry::{Piece, Pieces};
 use crate::mesh::{Admissible, Orbit};
@@ -11,6 +12,15 @@ use glam::DVec3;
 /// The share of a scene's vertices that has to be in marked objects. Where it is not, the scene is marked as one.
 const ENOUGH: f64 = 0.5;
 
+/// What an embedding chose for one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chosen {
+    /// Which of the scene's stable objects it is; none for the whole.
+    pub object: Option<u32>,
+    /// With what.
+    pub choice: Choice,
+}
+
 /// Gives the host the mark: each of its objects, where it has several that can hold a sturdy one, else the whole.
 pub fn embed(
     host: &Host,
@@ -19,8 +29,8 @@ pub fn embed(
 ) -> Result<Embedded, CarrierError> {
     let objects = Pieces::stable_objects(host.mesh);
     let mut scene = Marked::new(host);
-    for object in objects {
-        scene.mark(object, mark, progress)?;
+    for (number, object) in (0..).zip(objects) {
+        scene.mark(number, object, mark, progress)?;
     }
     let is_enough = scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64;
     match (scene.embedded(), is_enough) {
@@ -30,27 +40,45 @@ pub fn embed(
             scene,
         ) {
             (Err(CarrierError::Cancelled(cancelled)), _) => Err(cancelled.into()),
-            (Ok(whole), Some(_)) if whole.is_sturdy() => Ok(whole),
+            (Ok(whole), Some(scene)) => {
+                let whole = embedded(whole);
+                Ok(if whole.is_sturdy() { whole } else { scene })
+            }
             (_, Some(scene)) => Ok(scene),
-            (whole, None) => whole,
+            (whole, None) => whole.map(embedded),
         },
     }
 }
 
+/// A host that is marked as a whole.
+fn embedded(whole: InFrame) -> Embedded {
+    Embedded {
+        displacement: whole.displacement,
+        carrier: Carrier::Solid,
+        exponent: whole.exponent,
+        needs: whole.needs,
+        chosen: vec![Chosen {
+            object: None,
+            choice: whole.choice,
+        }],
+    }
+}
+
 /// A scene of which some objects are marked.
-struct Marked<'a> {
+pub struct Marked<'a> {
     host: &'a Host<'a>,
-    displacement: Vec<DVec3>,
+    pub displacement: Vec<DVec3>,
     /// Vertices whose displacement is decided: those of marked objects, and what is tied to them.
     is_decided: Vec<bool>,
     /// Vertices of marked objects.
     num_marked: usize,
     /// What the object that holds most reaches, and needs.
     best: Option<(f64, Needs)>,
+    chosen: Vec<Chosen>,
 }
 
 impl<'a> Marked<'a> {
-    fn new(host: &'a Host) -> Marked<'a> {
+    pub fn new(host: &'a Host) -> Marked<'a> {
         let num_vertices = host.mesh.positions.len();
         let mut is_decided = vec![false; num_vertices];
         for &vertex in &host.admissible.fixed {
@@ -62,6 +90,7 @@ impl<'a> Marked<'a> {
             is_decided,
             num_marked: 0,
             best: None,
+            chosen: Vec::new(),
         }
     }
 
@@ -72,19 +101,19 @@ impl<'a> Marked<'a> {
             carrier: Carrier::Solid,
             exponent,
             needs,
+            chosen: self.chosen,
         })
     }
 
     /// Marks an object, where it can hold a sturdy mark. One that is an instance of a marked one holds its mark already.
     fn mark(
         &mut self,
+        number: u32,
         object: Piece,
         mark: &Mark,
         progress: &mut dyn Progress,
     ) -> Result<(), CarrierError> {
-        let mut vertices: Vec<u32> = object.iter().flatten().copied().collect();
-        vertices.sort_unstable();
-        vertices.dedup();
+        let vertices = vertices_of(&object);
         let mesh = self.host.mesh.part(object);
         let num_moved = vertices
             .iter()
@@ -110,6 +139,10 @@ impl<'a> Marked<'a> {
             Ok(object) => {
                 self.decide(&vertices, &object.displacement);
                 self.num_marked += vertices.len();
+                self.chosen.push(Chosen {
+                    object: Some(number),
+                    choice: object.choice,
+                });
                 if self.best.is_none_or(|(most, _)| object.exponent > most) {
                     self.best = Some((object.exponent, object.needs));
                 }
@@ -121,7 +154,7 @@ impl<'a> Marked<'a> {
     }
 
     /// What an object's vertices may do, by their places among its own.
-    fn admissible_in(&self, vertices: &[u32]) -> Admissible {
+    pub fn admissible_in(&self, vertices: &[u32]) -> Admissible {
         let place = |vertex: u32| {
             vertices
                 .binary_search(&vertex)
@@ -147,7 +180,7 @@ impl<'a> Marked<'a> {
     }
 
     /// Moves an object's vertices, and what is tied to them.
-    fn decide(&mut self, vertices: &[u32], displacement: &[DVec3]) {
+    pub fn decide(&mut self, vertices: &[u32], displacement: &[DVec3]) {
         for (&vertex, &d) in vertices.iter().zip(displacement) {
             let vertex = vertex as usize;
             if !self.is_decided[vertex] {
@@ -169,4 +202,12 @@ impl<'a> Marked<'a> {
             }
         }
     }
+}
+
+/// The vertices of an object, ascending.
+pub fn vertices_of(object: &Piece) -> Vec<u32> {
+    let mut vertices: Vec<u32> = object.iter().flatten().copied().collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
 }

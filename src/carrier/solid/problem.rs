@@ -15,6 +15,7 @@ use super::window::{Window, sensitivity};
 use crate::geometry::{Pose, Quadrature, conjugate_gradients};
 use crate::mesh::Mesh;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Windows whose vertices are listed at a time: lists for all would double the memory.
 const BLOCK: usize = 512;
@@ -22,14 +23,14 @@ const CG_STEPS: usize = 50;
 const CG_TOLERANCE: f64 = 1e-3;
 /// Displacements and fluxes are in lattice coordinates.
 pub struct Problem<'a> {
-    triangles: &'a [[u32; 3]],
+    triangles: Cow<'a, [[u32; 3]]>,
     /// In lattice coordinates.
     positions: Vec<DVec3>,
     /// By vertex: the triangles at it.
     faces: Lists<u32>,
     /// By vertex: windows and how they answer to its displacement in units of its freedom.
     pushes: Lists<(u32, [f32; 3])>,
-    freedom: &'a [f64],
+    freedom: Cow<'a, [f64]>,
     /// By window: its inner products with windows, itself included. None are listed where vertices are few: [`Problem::inner`].
     gram: Lists<(u32, f64)>,
     diagonal: Vec<f64>,
@@ -37,8 +38,6 @@ pub struct Problem<'a> {
     coupling: Vec<PerMoment<f64>>,
     /// Takes coordinates in that basis to multipliers of the moments.
     basis: PerMoment<PerMoment<f64>>,
-    /// The last solution of the dual: the next one is near it.
-    multipliers: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
@@ -55,7 +54,7 @@ impl<'a> Problem<'a> {
             faces.flat_map(|(triangle, face)| triangle.map(|vertex| (vertex, face)))
         };
         let mut problem = Problem {
-            triangles: &mesh.triangles,
+            triangles: Cow::Borrowed(&mesh.triangles),
             positions: mesh
                 .positions
                 .iter()
@@ -63,12 +62,11 @@ impl<'a> Problem<'a> {
                 .collect(),
             faces: Lists::from_pairs(num_vertices, corners),
             pushes: Lists::default(),
-            freedom,
+            freedom: Cow::Borrowed(freedom),
             gram: Lists::default(),
             diagonal: Vec::new(),
             coupling: vec![[0.0; MOMENTS]; active.len()],
             basis: [[0.0; MOMENTS]; MOMENTS],
-            multipliers: vec![0.0; active.len()],
         };
         problem.push(active);
         problem.project();
@@ -251,6 +249,15 @@ impl<'a> Problem<'a> {
         self.positions.len()
     }
 
+    /// The same, which needs nobody else's memory.
+    pub fn into_owned(self) -> Problem<'static> {
+        Problem {
+            triangles: Cow::Owned(self.triangles.into_owned()),
+            freedom: Cow::Owned(self.freedom.into_owned()),
+            ..self
+        }
+    }
+
     pub fn mean_diagonal(&self) -> f64 {
         self.diagonal.iter().sum::<f64>() / self.diagonal.len() as f64
     }
@@ -279,11 +286,17 @@ impl<'a> Problem<'a> {
         parts
     }
 
-    /// The displacements of all vertices that take the windows nearest to their goals.
-    pub fn solve(&mut self, goals: &[f64], weights: &[f64], mu: f64) -> Vec<DVec3> {
-        let mut multipliers = std::mem::take(&mut self.multipliers);
-        self.relax(goals, weights, mu, &mut multipliers);
-        let parts = self.parts(&multipliers);
+    /// The displacements of all vertices that take the windows nearest to their goals, from the last solution of the dual on: the next one
+    /// is near it.
+    pub fn solve(
+        &self,
+        goals: &[f64],
+        weights: &[f64],
+        mu: f64,
+        multipliers: &mut [f64],
+    ) -> Vec<DVec3> {
+        self.relax(goals, weights, mu, multipliers);
+        let parts = self.parts(multipliers);
         let mut of_moments = [0.0; MOMENTS];
         for (vector, part) in self.basis.iter().zip(parts) {
             of_moments
@@ -301,9 +314,7 @@ impl<'a> Problem<'a> {
             }
             x * self.freedom[vertex]
         };
-        let solution = (0..self.positions.len()).map(displacement).collect();
-        self.multipliers = multipliers;
-        solution
+        (0..self.positions.len()).map(displacement).collect()
     }
 
     /// The matrix of the dual times a number for each window: what the windows are to be moved by for these multipliers.

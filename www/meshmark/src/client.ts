@@ -17,7 +17,13 @@ import type {
   MeasureMeshOptions,
   MeasureOptions,
   Payload,
+  Prepared,
   ReadOptions,
+  Stamped,
+  StateReadingOptions,
+  TraceMeshOptions,
+  TraceOptions,
+  Tracing,
   Verification,
 } from "./index.js";
 import type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "./informed.js";
@@ -35,6 +41,14 @@ export interface ClientOptions {
   codecsUrl?: string | URL | undefined;
   /** Default: the module of this package that reads with the original. It is fetched when it is asked for. */
   informedUrl?: string | URL | undefined;
+  /** Default: the module of this package for copies and tracing. It is fetched with the first of those calls. */
+  copiesUrl?: string | URL | undefined;
+}
+
+/** Of `copies`. */
+export interface CopiesOptions extends EmbedOptions, CallOptions {
+  /** Workers that stamp at the same time, 1 to 16. Default: 2. Each holds the model. */
+  workers?: number | undefined;
 }
 
 /** The functions of `meshmark` with the same arguments; a `signal` among their options ends a call. They reject with `MeshmarkError`. */
@@ -64,6 +78,20 @@ export interface Client {
   record(original: Uint8Array, report: Marking, key: Uint8Array, options?: RecordOptions & CallOptions): Promise<string>;
   demoModel(options?: CallOptions): Promise<Uint8Array>;
   version(options?: CallOptions): Promise<string>;
+  prepare(model: Uint8Array, key: Uint8Array, options?: EmbedOptions & CallOptions): Promise<Prepared>;
+  stamp(plan: Uint8Array, number: number, options?: CallOptions): Promise<Stamped>;
+  /** A copy for each number, in their order, made by several workers. To end early, leave the loop. */
+  copies(model: Uint8Array, numbers: Iterable<number>, key: Uint8Array, options?: CopiesOptions): AsyncGenerator<Stamped, void, void>;
+  trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions & CallOptions): Promise<Tracing>;
+  traceMesh(
+    positions: Float64Array,
+    triangles: Uint32Array,
+    key: Uint8Array,
+    numbers: Float64Array,
+    options?: TraceMeshOptions & CallOptions,
+  ): Promise<Tracing>;
+  stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions & CallOptions): Promise<string>;
+  copyNumber(payload: number, key: Uint8Array, options?: CallOptions): Promise<number>;
   /** Ends the worker; calls under way, and later ones, reject with code `disposed`. */
   dispose(): void;
 }
@@ -74,12 +102,10 @@ export interface Client {
  * @throws MeshmarkError `worker.failed` where no worker can be started (Node has none), `init.failed` where the module
  * cannot be loaded
  */
-export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl }: ClientOptions = {}): Promise<Client> {
-  const remote = new Remote(() => startWorker(workerUrl), {
-    wasmUrl: absolute(wasmUrl),
-    codecsUrl: absolute(codecsUrl),
-    informedUrl: absolute(informedUrl),
-  });
+export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl, copiesUrl }: ClientOptions = {}): Promise<Client> {
+  const setup = { wasmUrl: absolute(wasmUrl), codecsUrl: absolute(codecsUrl), informedUrl: absolute(informedUrl), copiesUrl: absolute(copiesUrl) };
+  const start = () => new Remote(() => startWorker(workerUrl), setup);
+  const remote = start();
   const client: Client = {
     deriveKey: (owner, passphrase, options) => remote.call("deriveKey", [owner, passphrase], options),
     workKey: (key, title, options) => remote.call("workKey", [key, title], options),
@@ -100,6 +126,13 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl 
     record: (original, report, key, options) => remote.call("record", [original, report, key], options),
     demoModel: (options) => remote.call("demoModel", [], options),
     version: (options) => remote.call("version", [], options),
+    prepare: (model, key, options) => remote.call("prepare", [model, key], options),
+    stamp: (plan, number, options) => remote.call("stamp", [plan, number], options),
+    copies: (model, numbers, key, options) => copies(remote, start, model, numbers, key, options),
+    trace: (model, key, numbers, options) => remote.call("trace", [model, key, numbers], options),
+    traceMesh: (positions, triangles, key, numbers, options) => remote.call("traceMesh", [positions, triangles, key, numbers], options),
+    stateReading: (model, key, options) => remote.call("stateReading", [model, key], options),
+    copyNumber: (payload, key, options) => remote.call("copyNumber", [payload, key], options),
     dispose: () => remote.dispose(),
   };
   try {
@@ -109,6 +142,40 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl 
     throw error;
   }
   return client;
+}
+
+/** The client's own worker prepares; others stamp beside it, and end with the last copy. */
+async function* copies(
+  remote: Remote,
+  start: () => Remote,
+  model: Uint8Array,
+  numbers: Iterable<number>,
+  key: Uint8Array,
+  { workers = 2, signal, ...options }: CopiesOptions = {},
+): AsyncGenerator<Stamped, void, void> {
+  const { plan } = await remote.call<Prepared>("prepare", [model, key], { ...options, signal });
+  const others = Array.from({ length: Math.min(Math.max(Math.trunc(workers), 1), 16) - 1 }, start);
+  const stampers = [remote, ...others];
+  const waiting: Promise<Stamped>[] = [];
+  const ask = (number: number, place: number) => {
+    const copy = stampers[place % stampers.length]!.call<Stamped>("stamp", [plan, number], { signal });
+    copy.catch(() => {}); // it is heard of when its turn comes
+    waiting.push(copy);
+  };
+  try {
+    let place = 0;
+    for (const number of numbers) {
+      ask(number, place++);
+      if (waiting.length > stampers.length) {
+        yield await waiting.shift()!;
+      }
+    }
+    while (waiting.length > 0) {
+      yield await waiting.shift()!;
+    }
+  } finally {
+    others.forEach((other) => other.dispose());
+  }
 }
 
 /** Bundlers look for these very words, `new Worker(new URL(…))`. */

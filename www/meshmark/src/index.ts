@@ -6,6 +6,15 @@
 import * as wasm from "../wasm/meshmark.js";
 import { asMeshmarkError, MeshmarkError } from "./error.js";
 import { load, type InitInput, type Loadable } from "./loading.js";
+import type {
+  EmbedOptions,
+  Prepared,
+  Stamped,
+  StateReadingOptions,
+  TraceMeshOptions,
+  TraceOptions,
+  Tracing,
+} from "../wasm/meshmark.js";
 
 export { MeshmarkError };
 export type {
@@ -31,9 +40,18 @@ export type {
   MeshmarkErrorObject,
   OnProgress,
   Payload,
+  Prepared,
   ReadOptions,
   Stage,
+  Stamped,
+  StampReport,
+  StatedFile,
+  StatementOptions,
+  StateReadingOptions,
   Strength,
+  TraceMeshOptions,
+  TraceOptions,
+  Tracing,
   Verdict,
   Verification,
 } from "../wasm/meshmark.js";
@@ -91,7 +109,45 @@ async function startCodecs(input: InitInput = new URL("../wasm-codecs/codecs_bg.
   // @ts-ignore It has the types of the first module, and may be built after the package.
   const codecs = (await import("../wasm-codecs/codecs.js")) as Module;
   await load(codecs, input);
-  current = codecs;
+  current = copies ?? codecs;
+  started = true;
+}
+
+/** What the module for sellers has beside all that the others have. */
+interface Copies {
+  prepare(model: Uint8Array, key: Uint8Array, options?: EmbedOptions): Prepared;
+  stamp(plan: Uint8Array, number: number): Stamped;
+  trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions): Tracing;
+  traceMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, numbers: Float64Array, options?: TraceMeshOptions): Tracing;
+  stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions): string;
+  copyNumber(payload: number, key: Uint8Array): number;
+}
+
+let startingCopies: Promise<void> | undefined;
+let copies: (Module & Copies) | undefined;
+
+/**
+ * Loads the module that makes copies for buyers and traces them, in the place of the others: it reads compressed geometry too. Until then
+ * `prepare`, `stamp`, `trace`, `traceMesh`, `stateReading` and `copyNumber` throw `init.missing`. The client calls it when it is needed.
+ *
+ * @param input as for `init`
+ * @throws MeshmarkError `init.failed`
+ */
+export function initCopies(input?: InitInput): Promise<void> {
+  startingCopies ??= startCopies(input).catch((cause: unknown) => {
+    startingCopies = undefined;
+    const known = asMeshmarkError(cause);
+    const words = `The module for copies could not be loaded: ${String(cause)}`;
+    throw known instanceof MeshmarkError ? known : new MeshmarkError("init.failed", words, null, { cause });
+  });
+  return startingCopies;
+}
+
+async function startCopies(input: InitInput = new URL("../wasm-copies/copies_bg.wasm", import.meta.url)): Promise<void> {
+  // @ts-ignore It has the types of the first module and of `Copies`, and may be built after the package.
+  const module = (await import("../wasm-copies/copies.js")) as Module & Copies;
+  await load(module, input);
+  current = copies = module;
   started = true;
 }
 
@@ -99,11 +155,27 @@ type Name = Exclude<keyof typeof wasm, "default" | "initSync">;
 
 /** The function of the module that answers, with its errors made `MeshmarkError`s. More arguments than it takes would be ignored in silence. */
 function guarded<N extends Name>(name: N): (typeof wasm)[N] {
-  const call = (...args: unknown[]): unknown => {
+  return checked(() => {
     if (!started) {
       throw new MeshmarkError("init.missing", "Call init() and wait for it first.");
     }
-    const f = current[name] as (...args: unknown[]) => unknown;
+    return current[name];
+  }) as (typeof wasm)[N];
+}
+
+/** The same of what sellers need. */
+function guardedCopies<N extends keyof Copies>(name: N): Copies[N] {
+  return checked(() => {
+    if (!copies) {
+      throw new MeshmarkError("init.missing", "Call initCopies() and wait for it first.");
+    }
+    return copies[name];
+  }) as Copies[N];
+}
+
+function checked(find: () => unknown): (...args: unknown[]) => unknown {
+  return (...args) => {
+    const f = find() as (...args: unknown[]) => unknown;
     if (args.length > f.length) {
       throw new MeshmarkError("options.argument", `There are ${args.length} arguments; it takes at most ${f.length}.`);
     }
@@ -113,7 +185,6 @@ function guarded<N extends Name>(name: N): (typeof wasm)[N] {
       throw asMeshmarkError(thrown);
     }
   };
-  return call as (typeof wasm)[N];
 }
 
 export const deriveKey = guarded("deriveKey");
@@ -131,3 +202,10 @@ export const inspect = guarded("inspect");
 export const capacity = guarded("capacity");
 export const demoModel = guarded("demoModel");
 export const version = guarded("version");
+
+export const prepare = guardedCopies("prepare");
+export const stamp = guardedCopies("stamp");
+export const trace = guardedCopies("trace");
+export const traceMesh = guardedCopies("traceMesh");
+export const stateReading = guardedCopies("stateReading");
+export const copyNumber = guardedCopies("copyNumber");

@@ -1,6 +1,7 @@
 /** The worker behind `createClient`: a real file, so that it runs under a strict Content-Security-Policy. */
 import {
   capacity,
+  copyNumber,
   decompress,
   deriveKey,
   demoModel,
@@ -11,10 +12,16 @@ import {
   extractMany,
   init,
   initCodecs,
+  initCopies,
   inspect,
   measure,
   measureMesh,
   MeshmarkError,
+  prepare,
+  stamp,
+  stateReading,
+  trace,
+  traceMesh,
   verify,
   version,
   workKey,
@@ -32,6 +39,16 @@ function withOriginal(name: "compare" | "compareMesh" | "compareWithRecord" | "r
     const module: Informed = await import("./informed.js");
     await module.init(informedUrl);
     return (module[name] as (...args: unknown[]) => unknown)(...args);
+  };
+}
+
+let copiesUrl: string | undefined;
+
+/** A function of the module that sellers need, which is loaded with the first call. */
+function selling<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
+  return async (...args: Arguments): Promise<Result> => {
+    await initCopies(copiesUrl);
+    return f(...args);
   };
 }
 
@@ -71,10 +88,17 @@ answer(
     record: withOriginal("record"),
     demoModel,
     version,
+    prepare: selling(prepare),
+    stamp: selling(stamp),
+    trace: selling(trace),
+    traceMesh: selling(traceMesh),
+    stateReading: selling(stateReading),
+    copyNumber: selling(copyNumber),
   },
   (setup) => {
     codecsUrl = setup?.["codecsUrl"];
     informedUrl = setup?.["informedUrl"];
+    copiesUrl = setup?.["copiesUrl"];
     return init(setup?.["wasmUrl"]);
   },
 );

@@ -1,0 +1,74 @@
+//! `--report`: what was found, as one HTML file that a person prints or sends.
+
+use crate::failure::Failure;
+use crate::file::{load, store};
+use crate::owner::Owner;
+use clap::Args;
+use meshmark::internals::digest::sha256;
+use meshmark::{Finding, Key, StatedFile, Statement};
+use std::path::{Path, PathBuf};
+
+/// Whether and where a statement is written.
+#[derive(Args)]
+pub struct StatementArgument {
+    /// Write what was found as an HTML file too, for a person: what it means, what it does not prove, and how to repeat it
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// What the report says as its date, in your words
+    #[arg(long, requires = "report")]
+    date: Option<String>,
+    /// A file that the report names as the original
+    #[arg(long, value_name = "FILE", requires = "report")]
+    original: Option<PathBuf>,
+}
+
+impl StatementArgument {
+    /// Writes the statement, where one is asked for. `repeated` is the command that repeats it, without the owner.
+    pub fn write(
+        &self,
+        finding: Finding,
+        input: &Path,
+        key: &Key,
+        owner: &Owner,
+        repeated: &str,
+    ) -> Result<(), Failure> {
+        let Some(path) = &self.report else {
+            return Ok(());
+        };
+        let mut looked_at = vec![("Suspect", input)];
+        looked_at.extend(
+            self.original
+                .iter()
+                .map(|path| ("Original", path.as_path())),
+        );
+        let mut read = Vec::new();
+        for (role, path) in looked_at {
+            let bytes = load(path)?;
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            read.push((role, name, bytes.len() as u64, sha256(&bytes)));
+        }
+        let files: Vec<StatedFile> = read
+            .iter()
+            .map(|(role, name, bytes, sha256)| StatedFile {
+                role,
+                name,
+                bytes: *bytes,
+                sha256,
+            })
+            .collect();
+        let commitment = key.commitment();
+        let statement = Statement {
+            finding,
+            owner: owner.name(),
+            commitment: &commitment,
+            files: &files,
+            date: self.date.as_deref(),
+            commands: &[format!("{repeated} {}", owner.arguments())],
+        };
+        store(path, statement.html().as_bytes())
+    }
+}

@@ -1,0 +1,109 @@
+// The shop as people use it: a model is sold, two buy it, mix their copies and leak that; a moderator learns who.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import * as meshmark from "meshmark";
+import { chromium } from "playwright-core";
+
+const data = mkdtempSync(join(tmpdir(), "meshmark-shop-"));
+let server;
+let origin;
+let browser;
+
+before(async () => {
+  await meshmark.init();
+  server = spawn(process.execPath, ["server.mjs"], {
+    cwd: fileURLToPath(new URL(".", import.meta.url)),
+    env: { ...process.env, PORT: "0", SHOP_DATA: data },
+    stdio: ["ignore", "pipe", "inherit"],
+  });
+  for await (const chunk of server.stdout) {
+    [origin] = /http:\S+/.exec(chunk) ?? [];
+    if (origin) break;
+  }
+  browser = await chromium.launch({ executablePath: process.env.MESHMARK_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+});
+
+after(async () => {
+  await browser?.close();
+  server?.kill();
+  rmSync(data, { recursive: true, force: true });
+});
+
+const glb = (bytes) => new File([bytes], "copy.glb", { type: "model/gltf-binary" });
+
+async function post(path, fields) {
+  const body = new FormData();
+  for (const [name, value] of Object.entries(fields)) {
+    body.append(name, value);
+  }
+  return fetch(origin + path, { method: "POST", body, redirect: "manual" });
+}
+
+const bought = async (buyer) => new Uint8Array(await (await post("/models/1/copies", { buyer })).arrayBuffer());
+
+/** Where the positions of a .glb lie. */
+function positions(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset);
+  const length = view.getUint32(12, true);
+  const json = JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + length)));
+  const accessor = json.accessors[json.meshes[0].primitives[0].attributes.POSITION];
+  const start = 28 + length + (json.bufferViews[accessor.bufferView].byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+  return { view, start, count: 3 * accessor.count };
+}
+
+function averaged(a, b) {
+  const mixed = a.slice();
+  const [to, other] = [positions(mixed), positions(b)];
+  for (let place = to.start; place < to.start + 4 * to.count; place += 4) {
+    to.view.setFloat32(place, (to.view.getFloat32(place, true) + other.view.getFloat32(place, true)) / 2, true);
+  }
+  return mixed;
+}
+
+test("a model is sold, bought, leaked and traced", { timeout: 300_000 }, async () => {
+  const page = await browser.newPage();
+  const offences = [];
+  page.on("pageerror", (error) => offences.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && offences.push(message.text()));
+  await page.goto(origin);
+  await page.getByLabel("Title").fill("Rock <script>alert(1)</script>");
+  await page.getByLabel("Your name").last().fill("Ada");
+  await page.getByLabel("Your passphrase").fill("correct horse battery staple");
+  await page.getByLabel("Model to protect").setInputFiles({ name: "rock.glb", mimeType: "model/gltf-binary", buffer: Buffer.from(meshmark.demoModel()) });
+  await page.getByText("Protected.").waitFor({ timeout: 120_000 });
+  await page.getByRole("button", { name: "Sell" }).click();
+  await page.getByText("by Ada").waitFor({ timeout: 120_000 });
+  assert.match(await page.textContent("li"), /Rock <script>/);
+  assert.deepEqual(offences, []);
+
+  const [grace, lin, eve] = [await bought("Grace"), await bought("Lin"), await bought("Eve")];
+  // The seller's own mark is in every copy, below the shop's.
+  const key = meshmark.deriveKey("Ada", "correct horse battery staple");
+  assert.equal(meshmark.detect(grace, key).tag, "SHOP");
+  assert.notDeepEqual(grace, lin);
+
+  const leaked = averaged(grace, lin);
+  const statement = await (await post("/moderation", { suspect: glb(leaked) })).text();
+  assert.match(statement, /Grace/);
+  assert.match(statement, /Lin/);
+  assert.doesNotMatch(statement, /Eve/);
+  assert.match(statement, /What this does not prove/);
+  // Who sells it again is refused; who sells something else is not named.
+  const again = await post("/models", { title: "Mine", seller: "Mallory", model: glb(eve) });
+  assert.equal(again.status, 409);
+  const other = await (await post("/moderation", { suspect: glb(meshmark.demoModel()) })).text();
+  assert.match(other, /No evidence of this key/);
+});
+
+test("what is no model, or not there, is refused in words", async () => {
+  assert.equal((await post("/models", { title: "x", seller: "y", model: glb("not a model") })).status, 422);
+  assert.equal((await post("/models/99/copies", { buyer: "Grace" })).status, 404);
+  assert.equal((await post("/models", { title: "x" })).status, 400);
+  assert.equal((await fetch(`${origin}/assets/../server.mjs`)).status, 404);
+  assert.equal((await fetch(`${origin}/assets/meshmark/dist/..%2f..%2fpackage.json`)).status, 404);
+});

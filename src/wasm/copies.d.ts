@@ -1,0 +1,12 @@
+/** Looks at a model once for all its copies. */
+export function prepare(model: Uint8Array, key: Uint8Array, options?: EmbedOptions): Prepared;
+/** A copy with a number, 0 to 2^48 - 1. The last plan is kept ready: the first stamp of another one takes as long as several. */
+export function stamp(plan: Uint8Array, number: number): Stamped;
+/** Says whose copies a model was made of, among the numbers of a ledger. */
+export function trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions): Tracing;
+/** The same of a suspect that is no glTF. */
+export function traceMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, numbers: Float64Array, options?: TraceMeshOptions): Tracing;
+/** Reads a model as `detect` does, and gives what was found as an HTML file. */
+export function stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions): string;
+/** The number of the copy that has this payload under the key. */
+export function copyNumber(payload: number, key: Uint8Array): number;

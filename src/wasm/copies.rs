@@ -1,0 +1,191 @@
+//! Copies for buyers, and tracing: what a page loads when somebody sells.
+
+use super::marks::{embed_options_from, key_from, model_to, surface_from};
+use super::options::Options;
+use super::{argument, encoded, set, thrown};
+use crate::watermark::{self, Error};
+use crate::{
+    Extraction, Finding, Key, Model, Payload, Plan, StatedFile, Statement, Surface, Tracing,
+};
+use js_sys::{Array, Object, Reflect, Uint8Array};
+use std::cell::RefCell;
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("copies.d.ts");
+
+thread_local! {
+    /// The plan that was stamped last: to look at its host again takes longer than a stamp.
+    static LAST: RefCell<Option<(Vec<u8>, Plan)>> = const { RefCell::new(None) };
+}
+
+/// Looks at a model once for all its copies.
+#[wasm_bindgen(skip_typescript)]
+pub fn prepare(model: &[u8], key: &[u8], options: JsValue) -> Result<Object, JsValue> {
+    let known = ["files", "strength", "carriers", "maxMovement", "onProgress"];
+    let options = Options::new(options, &known)?;
+    let key = key_from(key)?;
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let options = embed_options_from(&options)?;
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
+    let (plan, report) = watermark::prepare(model, &key, &options).map_err(thrown)?;
+    let bytes = plan.to_bytes();
+    let result = Object::new();
+    set(&result, "plan", &Uint8Array::from(bytes.as_slice()))?;
+    set(&result, "report", &encoded(&report)?)?;
+    LAST.set(Some((bytes, plan)));
+    Ok(result)
+}
+
+/// A copy with a number.
+#[wasm_bindgen(skip_typescript)]
+pub fn stamp(plan: &[u8], number: f64) -> Result<Object, JsValue> {
+    let number = number_from(number)?;
+    let last = LAST.take().filter(|(bytes, _)| bytes == plan);
+    let (bytes, plan) = match last {
+        Some(last) => last,
+        None => (plan.to_vec(), Plan::from_bytes(plan).map_err(thrown)?),
+    };
+    let stamped = plan.stamp(number);
+    LAST.set(Some((bytes, plan)));
+    let stamped = stamped.map_err(thrown)?;
+    let result = model_to(&stamped.model, &stamped.files)?;
+    set(&result, "report", &encoded(&stamped.report)?)?;
+    Ok(result)
+}
+
+/// Says whose copies a model was made of.
+#[wasm_bindgen(skip_typescript)]
+pub fn trace(
+    model: &[u8],
+    key: &[u8],
+    numbers: &[f64],
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["files", "statement", "onProgress"])?;
+    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
+    let tracing = watermark::trace(model, &key, &numbers).map_err(thrown)?;
+    told(&tracing, &key, &options)
+}
+
+/// The same of a suspect that is no glTF.
+#[wasm_bindgen(js_name = traceMesh, skip_typescript)]
+pub fn trace_mesh(
+    positions: &[f64],
+    triangles: &[u32],
+    key: &[u8],
+    numbers: &[f64],
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["statement", "onProgress"])?;
+    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let mut listener = options.listener()?;
+    let (positions, triangles) = surface_from(positions, triangles)?;
+    let surface = Surface::new(positions, triangles).with_progress(&mut listener);
+    let tracing = watermark::trace(surface, &key, &numbers).map_err(thrown)?;
+    told(&tracing, &key, &options)
+}
+
+/// Reads a model with the key alone, and states what was found.
+#[wasm_bindgen(js_name = stateReading, skip_typescript)]
+pub fn state_reading(model: &[u8], key: &[u8], options: JsValue) -> Result<String, JsValue> {
+    let options = Options::new(options, &["files", "statement", "onProgress"])?;
+    let key = key_from(key)?;
+    let (files, mut listener) = (options.files("files")?, options.listener()?);
+    let model = Model::new(model)
+        .with_files(&files)
+        .with_progress(&mut listener);
+    let found: Extraction = watermark::detect(model, &key, None).map_err(thrown)?;
+    stated(Finding::Reading(&found), &key, &options.get("statement"))
+}
+
+/// The number of the copy that has a payload.
+#[wasm_bindgen(js_name = copyNumber, skip_typescript)]
+pub fn copy_number(payload: f64, key: &[u8]) -> Result<f64, JsValue> {
+    let payload = Payload::from_number(number_from(payload)?).map_err(Error::from);
+    Ok(payload.map_err(thrown)?.copy_number(&key_from(key)?) as f64)
+}
+
+/// A tracing, and its statement where one was asked for.
+fn told(tracing: &Tracing, key: &Key, options: &Options) -> Result<JsValue, JsValue> {
+    let result = encoded(tracing)?;
+    let asked = options.get("statement");
+    if let Some(object) = asked.dyn_ref::<Object>() {
+        let names = Reflect::get(object, &"names".into())?;
+        let mut named = Vec::new();
+        if let Some(names) = names.dyn_ref::<Object>() {
+            for buyer in &tracing.buyers {
+                let name = Reflect::get(names, &buyer.number.to_string().into())?;
+                named.push((buyer.number, name.as_string().unwrap_or_default()));
+            }
+        }
+        let html = stated(Finding::Tracing(tracing, &named), key, &asked)?;
+        let object = result.unchecked_ref::<Object>();
+        set(object, "statement", &html.into())?;
+    }
+    Ok(result)
+}
+
+/// A statement as HTML.
+fn stated(finding: Finding, key: &Key, asked: &JsValue) -> Result<String, JsValue> {
+    let get = |object: &JsValue, name: &str| Reflect::get(object, &name.into());
+    let words = |object: &JsValue, name: &str| -> Result<Option<String>, JsValue> {
+        Ok(get(object, name)?.as_string())
+    };
+    let object = asked
+        .dyn_ref::<Object>()
+        .ok_or_else(|| argument("statement is an object"))?;
+    let mut files = Vec::new();
+    let given = get(object, "files")?;
+    for file in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {
+        files.push((
+            words(&file, "role")?.unwrap_or_default(),
+            words(&file, "name")?.unwrap_or_default(),
+            get(&file, "bytes")?.as_f64().unwrap_or_default() as u64,
+            words(&file, "sha256")?.unwrap_or_default(),
+        ));
+    }
+    let files: Vec<StatedFile> = files
+        .iter()
+        .map(|(role, name, bytes, sha256)| StatedFile {
+            role,
+            name,
+            bytes: *bytes,
+            sha256,
+        })
+        .collect();
+    let given = get(object, "commands")?;
+    let mut commands = Vec::new();
+    for line in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {
+        commands.extend(line.as_string());
+    }
+    let (owner, date) = (words(object, "owner")?, words(object, "date")?);
+    let statement = Statement {
+        finding,
+        owner: owner.as_deref(),
+        commitment: &key.commitment(),
+        files: &files,
+        date: date.as_deref(),
+        commands: &commands,
+    };
+    Ok(statement.html())
+}
+
+fn numbers_from(numbers: &[f64]) -> Result<Vec<u64>, JsValue> {
+    numbers.iter().copied().map(number_from).collect()
+}
+
+/// A whole number below 2^48.
+fn number_from(number: f64) -> Result<u64, JsValue> {
+    let is_number =
+        number >= 0.0 && number.fract() == 0.0 && number < (1u64 << Payload::BITS) as f64;
+    let number = if is_number { number as u64 } else { u64::MAX };
+    let payload = Payload::from_number(number).map_err(Error::from);
+    Ok(payload.map_err(thrown)?.number())
+}

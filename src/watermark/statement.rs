@@ -1,0 +1,271 @@
+//! A statement: what was found in a suspect, as one HTML file that a person prints or sends. No script, nothing from the network.
+
+use super::report::{Extraction, Input, Verdict};
+use super::trace::{Traced, Tracing};
+use std::f64::consts::LN_10;
+use std::fmt::Write;
+
+/// A file that a statement is about.
+#[derive(Clone, Copy, Debug)]
+pub struct StatedFile<'a> {
+    /// What it is to the reader: `Suspect`, `Original`.
+    pub role: &'a str,
+    /// Its name.
+    pub name: &'a str,
+    /// Its size in bytes.
+    pub bytes: u64,
+    /// SHA-256 of it, in hexadecimal digits.
+    pub sha256: &'a str,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Finding<'a> {
+    /// With the key alone, or with an expected payload.
+    Reading(&'a Extraction),
+    /// Whose copies are in it, and what the ledger calls some numbers.
+    Tracing(&'a Tracing, &'a [(u64, String)]),
+}
+
+/// What a statement says beside the finding. Every word is shown as text, whatever is in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Statement<'a> {
+    /// What was found.
+    pub finding: Finding<'a>,
+    /// Whose key it was, as they call themselves.
+    pub owner: Option<&'a str>,
+    /// Of the key: [`Key::commitment`].
+    pub commitment: &'a str,
+    /// What was looked at, the suspect first.
+    pub files: &'a [StatedFile<'a>],
+    /// When it was looked at, as the caller puts it: nothing here knows the time.
+    pub date: Option<&'a str>,
+    /// Command lines that repeat it.
+    pub commands: &'a [String],
+}
+
+/// Decimal digits of a chance beyond which none is told: the keyed function that all rests on has a key of 128 bits.
+const MOST_DIGITS: f64 = 38.0;
+
+impl Statement<'_> {
+    /// The statement as a whole HTML document.
+    pub fn html(&self) -> String {
+        let (title, meaning) = (self.title(), self.meaning());
+        let mut facts = String::new();
+        let mut fact = |name: &str, value: &str| {
+            let _ = write!(
+                facts,
+                "<tr><th>{}</th><td>{}</td></tr>\n",
+                text(name),
+                text(value)
+            );
+        };
+        if let Some(owner) = self.owner {
+            fact("Owner of the key", owner);
+        }
+        fact("Commitment to the key", self.commitment);
+        for file in self.files {
+            fact(file.role, file.name);
+            fact("Its size", &format!("{} bytes", file.bytes));
+            fact("Its SHA-256", file.sha256);
+        }
+        if let Some(date) = self.date {
+            fact("Date given", date);
+        }
+        self.found(&mut fact);
+        fact("Made by", concat!("meshmark ", env!("CARGO_PKG_VERSION")));
+        let limits: String = self
+            .limits()
+            .into_iter()
+            .map(|limit| format!("<li>{}</li>\n", text(limit)))
+            .collect();
+        let commands: Vec<String> = self.commands.iter().map(|line| text(line)).collect();
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
+             <title>{plain_title}</title>\n<style>{STYLE}</style>\n<h1>{title}</h1>\n<p>{meaning}</p>\n\
+             <section class=\"box\"><h2>What this does not prove</h2>\n<ul>\n{limits}</ul></section>\n\
+             <h2>Facts</h2>\n<table>\n{facts}</table>\n\
+             <h2>How to repeat it</h2>\n<p>Whoever has the key and the files gets the same answer, on any machine:</p>\n<pre>{}</pre>\n\
+             <h2>When it was so</h2>\n<p>Nothing was sent anywhere, and nothing here proves a date. To show later that this file existed today, hand its \
+             SHA-256 to a timestamping service (RFC 3161) or to a notary; a timestamp of the marked model, taken when it was marked, shows more.</p>\n</html>\n",
+            commands.join("\n"),
+            plain_title = escaped(title),
+            title = text(title),
+            meaning = text(&meaning),
+        )
+    }
+
+    fn title(&self) -> &'static str {
+        match self.finding {
+            Finding::Reading(reading) => reading.sentence,
+            Finding::Tracing(tracing, _) => tracing.sentence,
+        }
+    }
+
+    /// What the verdict means, with its bound in words.
+    fn meaning(&self) -> String {
+        match self.finding {
+            Finding::Reading(reading) => match reading.verdict {
+                Verdict::Found | Verdict::Present => format!(
+                    "The suspect holds a mark of this key. A model that was made without the key would be given this answer with a \
+                     probability of {}.",
+                    chance(reading.details().ln_p)
+                ),
+                _ => reading.reason.clone().unwrap_or_default(),
+            },
+            Finding::Tracing(tracing, _) => match tracing.traced {
+                Traced::Named => format!(
+                    "Each number below is that of a copy which had a part in the suspect. That anybody of the {} buyers in the ledger would be \
+                     named who had no part in it has a probability of at most what is beside the number; nobody is named above 1 in 10^9.",
+                    tracing.num_buyers
+                ),
+                Traced::Nobody => "The suspect was made from a model with a mark of this key. Too little of any one copy is left to say \
+                                   whose it was, or it is a copy that the ledger does not have."
+                    .to_owned(),
+                _ => tracing.reading.reason.clone().unwrap_or_default(),
+            },
+        }
+    }
+
+    fn found(&self, fact: &mut impl FnMut(&str, &str)) {
+        let reading = match self.finding {
+            Finding::Reading(reading) => reading,
+            Finding::Tracing(tracing, names) => {
+                for buyer in &tracing.buyers {
+                    let name = names.iter().find(|(number, _)| *number == buyer.number);
+                    let name = name.map_or("", |(_, name)| name);
+                    let value = format!("{name} ({})", chance(buyer.ln_p));
+                    fact(&format!("Copy {}", buyer.number), value.trim_start());
+                }
+                fact("Buyers in the ledger", &tracing.num_buyers.to_string());
+                fact("Ways of reading tested", &tracing.num_ways.to_string());
+                &tracing.reading
+            }
+        };
+        if let Some(tag) = &reading.tag {
+            fact("Tag that was read", tag);
+        }
+        if let Some(number) = reading.number {
+            fact("Payload that was read", &number.to_string());
+        }
+        if reading.input == Input::Evidence {
+            fact(
+                "What was read",
+                "Evidence that somebody measured, not the model itself",
+            );
+        }
+    }
+
+    fn limits(&self) -> Vec<&'static str> {
+        let mut limits = Vec::new();
+        let is_positive = match self.finding {
+            Finding::Reading(reading) => {
+                matches!(reading.verdict, Verdict::Found | Verdict::Present)
+            }
+            Finding::Tracing(tracing, _) => {
+                matches!(tracing.traced, Traced::Named | Traced::Nobody)
+            }
+        };
+        if is_positive {
+            limits.extend([
+                "Who made the model first. Whoever has the model can add a mark of their own; what counts is whose mark is in the earlier file.",
+                "That the key was in nobody else's hands. Whoever has it can mark any model.",
+                "Who copied it, when, or whether they were allowed to.",
+            ]);
+        } else {
+            limits.push("That the model is not the owner's. A mark can be destroyed, and copies of unmarked files hold none.");
+        }
+        if let Finding::Tracing(tracing, _) = self.finding
+            && tracing.traced == Traced::Named
+        {
+            limits.extend([
+                "That a buyer gave it away: their copy may have been stolen from them.",
+                "That the ledger is right. It says which number was whose; its keeper holds the key and can stamp any number.",
+                "That nobody else had a part in it: a share that is too small is not seen.",
+            ]);
+        }
+        limits.push("More than the keyed function it rests on (SipHash-2-4 with keys of 128 bits), which is taken for random to who has no key.");
+        limits
+    }
+}
+
+/// A bound in words, and as a power of ten.
+fn chance(ln_p: f64) -> String {
+    let digits = (-ln_p / LN_10).floor();
+    if digits > MOST_DIGITS {
+        return format!("less than 1 in 10^{MOST_DIGITS}, beyond which nothing is told");
+    }
+    let words = match digits as u32 {
+        0..=5 => "",
+        6..=8 => "less than one in a million, ",
+        9..=11 => "less than one in a billion, ",
+        _ => "less than one in a million millions, ",
+    };
+    format!("{words}at most 1 in 10^{digits}")
+}
+
+/// Words as text of HTML: nothing in them is markup, and none turns the direction of what follows.
+fn text(words: &str) -> String {
+    format!("<bdi>{}</bdi>", escaped(words))
+}
+
+fn escaped(words: &str) -> String {
+    let mut escaped = String::new();
+    for character in words.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                escaped.push('\u{fffd}');
+            }
+            control if control.is_control() => escaped.push('\u{fffd}'),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:46rem;margin:2rem auto;padding:0 1rem;color:#111;background:#fff}\
+    h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:1.6rem}.box{border:2px solid #111;padding:.2rem 1rem;margin:1.2rem 0}\
+    .box h2{margin-top:.6rem}table{border-collapse:collapse;width:100%}th{text-align:left;width:14rem;vertical-align:top}\
+    th,td{border-bottom:1px solid #ccc;padding:.25rem .5rem .25rem 0;overflow-wrap:anywhere}pre{white-space:pre-wrap;background:#f3f3f3;padding:.8rem}\
+    @media print{body{margin:0;max-width:none}.box,table,pre{break-inside:avoid}}";
+
+#[cfg(test)]
+mod tests {
+    use super::{chance, text};
+
+    #[test]
+    fn words_are_text_whatever_is_in_them() {
+        assert_eq!(
+            text("<img src=x onerror=\"a()\">&'"),
+            "<bdi>&lt;img src=x onerror=&quot;a()&quot;&gt;&amp;&#39;</bdi>"
+        );
+        assert_eq!(
+            text("a\u{202e}b\u{0}\nc"),
+            "<bdi>a\u{fffd}b\u{fffd}\u{fffd}c</bdi>"
+        );
+    }
+
+    #[test]
+    fn chances_are_never_smaller_than_the_bound() {
+        assert_eq!(
+            chance(-20.8),
+            "less than one in a billion, at most 1 in 10^9"
+        );
+        assert_eq!(
+            chance(-14.0),
+            "less than one in a million, at most 1 in 10^6"
+        );
+        assert_eq!(
+            chance(-3489.0),
+            "less than 1 in 10^38, beyond which nothing is told"
+        );
+        assert_eq!(chance(0.0), "at most 1 in 10^0");
+    }
+}

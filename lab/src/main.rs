@@ -6,6 +6,7 @@ mod adversary;
 mod baseline;
 mod case;
 mod cell;
+mod challenge;
 mod crafted;
 mod false_positives;
 mod found;
@@ -86,6 +87,9 @@ struct Arguments {
     /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
     #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     trace: bool,
+    /// Instead of the grid: generated models in a new folder, marked with a key that is drawn for them, for outsiders to break.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    challenge: Option<PathBuf>,
     /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced", requires = "wild")]
     strength: Strength,
@@ -146,6 +150,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.surface {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return surface::table(models, &Seed::new(seed));
+    }
+    if let Some(folder) = &arguments.challenge {
+        return challenge::write(models::generated().collect(), folder);
     }
     if arguments.adversary {
         let (models, _) = models::all(arguments.models.as_deref())?;

@@ -105,7 +105,8 @@ fn from_files(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String
     Ok((models, unread))
 }
 
-fn generated() -> impl Iterator<Item = Model> {
+/// Models of this project's own making.
+pub fn generated() -> impl Iterator<Item = Model> {
     use Class::{Game, Plain, Symmetric};
     use Size::{Full, Quick, Usual};
     let shapes = [

@@ -482,6 +482,44 @@ fn cli_writes_and_reads_a_note() {
 
 /// The seed paper's study of a small model: nothing is lost where nothing was smoothed, and what is blind and ranked is at chance.
 #[test]
+fn cli_reads_with_the_original_and_with_the_record() {
+    let folder = Folder::new("informed");
+    let (code, report, _) = folder.run(&format!(
+        "embed model.glb marked.glb {ADA} --tag ADA-1 --record --date 2026-11-29"
+    ));
+    assert_eq!(code, 0, "{report}");
+    let record = fs::read_to_string(folder.path("marked.meshmark.json")).unwrap();
+    let record: Value = serde_json::from_str(&record).unwrap();
+    assert_eq!(record["owner"], "Ada");
+    assert_eq!(record["date"], "2026-11-29");
+    assert_eq!(record["markedSha256"], report["markedSha256"]);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+    let words = ["attack", "marked.glb", "copy.glb"];
+    let steps = ["crop 30 %", "simplify 50 %"].map(|step| ["--step", step]);
+    let cut = command
+        .args(words)
+        .args(steps.as_flattened())
+        .current_dir(&folder.0);
+    assert!(cut.output().unwrap().status.success());
+    for with in ["--original model.glb", "--record marked.meshmark.json"] {
+        let (code, answer, _) = folder.run(&format!("extract copy.glb {with} {ADA}"));
+        assert_eq!(code, 0, "{with}: {answer}");
+        assert_eq!(answer["tag"], "ADA-1", "{with}");
+        assert_eq!(answer["shape"], "same", "{with}");
+        assert_eq!(answer["witness"], "surface", "{with}");
+    }
+    let (code, answer, _) = folder.run(&format!("extract model.glb --original model.glb {ADA}"));
+    assert_eq!((code, &answer["shape"]), (1, &json!("same")), "{answer}");
+    assert_eq!(answer["lnP"], Value::Null, "it follows the key");
+    let other = "--owner Ada --passphrase-file other.txt";
+    let (code, _, said) = folder.run(&format!(
+        "extract copy.glb --record marked.meshmark.json {other}"
+    ));
+    assert_eq!(code, 2);
+    assert!(said.contains("record.other-key"), "{said}");
+}
+
+#[test]
 fn cli_studies() {
     let here = Folder::new("study");
     let pebble = meshmark::internals::mesh::shapes::asteroid(30, 45);

@@ -12,7 +12,6 @@ use meshmark::{
     record,
 };
 use rayon::prelude::*;
-use std::fmt::Write;
 use std::time::Instant;
 
 /// Length of a side after remeshing, as a fraction of the diagonal.
@@ -22,8 +21,6 @@ type Make = fn(&Case, &Mesh, u64) -> Result<Mesh, String>;
 
 /// The rows: what is done to the marked mesh.
 const ROWS: [(&str, Make); 16] = [
-    ("unmarked", |case, _, _| Ok(case.host.clone())),
-    ("wrong key", |case, _, _| case.by_another(1)),
     ("none", |_, marked, _| Ok(marked.clone())),
     (
         "crop 30 %, simplify 50 %, glTF quantize 10 bits",
@@ -70,6 +67,8 @@ const ROWS: [(&str, Make); 16] = [
     ("resampled distance 0.8 %", |_, marked, seed| {
         by_name(marked, &["resampled distance 0.8 %"], seed)
     }),
+    ("unmarked", |case, _, _| Ok(case.host.clone())),
+    ("wrong key", |case, _, _| case.by_another(1)),
 ];
 
 fn by_name(mesh: &Mesh, names: &[&str], seed: u64) -> Result<Mesh, String> {
@@ -131,78 +130,68 @@ impl Said {
 /// Blind, with the original, with the record.
 type Cell = [Said; 3];
 
-/// The table: each model once at a strength, under keys of its own.
+/// Prints the table, row after row: each model once at a strength, under keys of its own.
 pub fn table(
     models: &[Model],
     (name, strength): (&'static str, Strength),
     seed: &Seed,
 ) -> Result<String, String> {
-    let all = models.par_iter().map(|model| {
-        let case = Case::new(model, (name, strength), 0, seed)?;
-        let cells = ROWS.par_iter().map(|row| cells_of(&case, row));
-        let cells = cells.collect::<Result<Vec<_>, String>>();
-        let is_marked = case.marked.is_ok();
-        Ok::<_, String>(is_marked.then_some((model, cells?)))
-    });
-    let all = all.collect::<Result<Vec<_>, _>>()?;
-    let marked: Vec<_> = all.into_iter().flatten().collect();
-    let mut text = format!(
-        "{name}, {} models, seed {}\n\n\
+    let cases = models.par_iter();
+    let cases = cases.map(|model| Case::new(model, (name, strength), 0, seed));
+    let mut cases = cases.collect::<Result<Vec<_>, _>>()?;
+    cases.retain(|case| case.marked.is_ok());
+    let names: Vec<&str> = cases.iter().map(|case| &*case.model.name).collect();
+    println!(
+        "{name}, seed {}, {} models: {}\n\n\
          | attack | blind | with the original | with the record | ln p, median: blind | original | record | s, median: original | record | not found with the original |\n\
-         |---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n",
-        marked.len(),
-        seed.number
+         |---|--:|--:|--:|--:|--:|--:|--:|--:|---|",
+        seed.number,
+        names.len(),
+        names.join(", "),
     );
-    for (number, (row, _)) in ROWS.iter().enumerate() {
-        let cells: Vec<(&str, &Cell)> = marked
-            .iter()
-            .map(|(model, cells)| (&*model.name, &cells[number]))
-            .collect();
-        let found = |by: usize| cells.iter().filter(|(_, cell)| cell[by].is_right).count();
-        let median = |by: usize, of: fn(&Said) -> f64| {
-            let mut values: Vec<f64> = cells.iter().map(|(_, cell)| of(&cell[by])).collect();
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied().unwrap_or(0.0)
-        };
-        let missed: Vec<String> = cells
-            .iter()
-            .filter(|(_, cell)| !cell[1].is_right)
-            .map(
-                |(name, cell)| match (cell[1].is_mark, cell[1].is_same_shape) {
-                    (true, _) => format!("{name} (p)"),
-                    (_, false) => format!("{name} (another shape)"),
-                    _ => (*name).to_owned(),
-                },
-            )
-            .collect();
-        let _ = writeln!(
-            text,
-            "| {row} | {} | {} | {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} | {} |",
-            found(0),
-            found(1),
-            found(2),
-            median(0, |said| said.ln_p),
-            median(1, |said| said.ln_p),
-            median(2, |said| said.ln_p),
-            median(1, |said| said.seconds),
-            median(2, |said| said.seconds),
-            missed.join(", "),
-        );
+    for row in &ROWS {
+        let cells = cases.par_iter().map(|case| cells_of(case, row));
+        let cells = cells.collect::<Result<Vec<Cell>, _>>()?;
+        println!("{}", line(row.0, &names, &cells));
     }
-    Ok(text)
+    Ok(String::new())
+}
+
+fn line(row: &str, names: &[&str], cells: &[Cell]) -> String {
+    let found = |by: usize| cells.iter().filter(|cell| cell[by].is_right).count();
+    let median = |by: usize, of: fn(&Said) -> f64| {
+        let mut values: Vec<f64> = cells.iter().map(|cell| of(&cell[by])).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    };
+    let missed: Vec<String> = names
+        .iter()
+        .zip(cells)
+        .filter(|(_, cell)| !cell[1].is_right)
+        .map(
+            |(name, cell)| match (cell[1].is_mark, cell[1].is_same_shape) {
+                (true, _) => format!("{name} (p)"),
+                (_, false) => format!("{name} (another shape)"),
+                _ => (*name).to_owned(),
+            },
+        )
+        .collect();
+    format!(
+        "| {row} | {} | {} | {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} | {} |",
+        found(0),
+        found(1),
+        found(2),
+        median(0, |said| said.ln_p),
+        median(1, |said| said.ln_p),
+        median(2, |said| said.ln_p),
+        median(1, |said| said.seconds),
+        median(2, |said| said.seconds),
+        missed.join(", "),
+    )
 }
 
 fn cells_of(case: &Case, (name, make): &(&str, Make)) -> Result<Cell, String> {
-    let nothing = || Said {
-        is_right: false,
-        is_mark: false,
-        is_same_shape: false,
-        ln_p: 0.0,
-        seconds: 0.0,
-    };
-    let Ok(marked) = &case.marked else {
-        return Ok([nothing(), nothing(), nothing()]);
-    };
+    let marked = case.marked.as_ref().map_err(Clone::clone)?;
     let purpose = format!("{}, {name}", case.purpose);
     let suspect = make(case, &marked.mesh, case.seed.number(&purpose, 0))?;
     let suspect = to_glb(&similarity(&suspect, case.seed.number(&purpose, 1)));

@@ -166,7 +166,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             true => Size::Quick,
             false => Size::Full,
         };
-        models.retain(|model| model.size <= most);
+        models.retain(|model| model.size <= most && model.class == models::Class::Plain);
         return informed::table(&models, strength, &Seed::new(seed));
     }
     if arguments.trace {

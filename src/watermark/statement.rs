@@ -64,9 +64,9 @@ impl Statement<'_> {
         let (title, meaning) = (self.title(), self.meaning());
         let mut facts = String::new();
         let mut fact = |name: &str, value: &str| {
-            let _ = write!(
+            let _ = writeln!(
                 facts,
-                "<tr><th>{}</th><td>{}</td></tr>\n",
+                "<tr><th>{}</th><td>{}</td></tr>",
                 text(name),
                 text(value)
             );

@@ -127,9 +127,8 @@ impl Copies {
         let num_threads = thread::available_parallelism().map_or(1, NonZero::get);
         thread::scope(|scope| {
             let threads: Vec<_> = (0..num_threads).map(|_| scope.spawn(work)).collect();
-            let ends = threads.into_iter().map(|thread| thread.join());
-            ends.map(|end| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect::<Result<(), Failure>>()
+            let mut ends = threads.into_iter().map(|thread| thread.join());
+            ends.try_for_each(|end| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         })?;
         let mut made = made
             .into_inner()

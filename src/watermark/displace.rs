@@ -16,6 +16,9 @@ pub(super) struct Used {
     pub chosen: Vec<Chosen>,
 }
 
+/// The displacement of all vertices, and what holds the mark.
+pub(super) type Displaced = (Vec<DVec3>, Vec<Used>);
+
 /// The displacement that gives the host the mark, in every carrier that it suits, and which these are.
 pub(super) fn displacement(
     scene: &Scene,
@@ -24,7 +27,7 @@ pub(super) fn displacement(
     has_payload: bool,
     options: &EmbedOptions,
     progress: &mut dyn Progress,
-) -> Result<(Vec<DVec3>, Vec<Used>), Error> {
+) -> Result<Displaced, Error> {
     let (mesh, used) = displaced(scene, leeway, mark, has_payload, options, progress)?;
     Ok((within_limit(scene, &mesh, options), used))
 }

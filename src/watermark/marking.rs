@@ -3,7 +3,7 @@
 use super::displace::{Moved, Used, displacement, write};
 use super::read_back::{is_read, is_seen_at_once};
 use super::report::Unshown;
-use super::unshown::mark_unshown;
+use super::unshown::{UsedByMesh, mark_unshown};
 use super::{EmbedOptions, Error, Extraction, Model, detect};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, CarrierError, Mark};
@@ -87,8 +87,7 @@ pub(super) struct Marked {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Recipe {
     pub shown: Vec<Used>,
-    /// By the meshes' places in the file.
-    pub unshown: Vec<(usize, Vec<Used>)>,
+    pub unshown: UsedByMesh,
 }
 
 /// Reads, displaces and writes.

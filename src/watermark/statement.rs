@@ -54,9 +54,9 @@ impl Statement<'_> {
         let (title, meaning) = (self.title(), self.meaning());
         let mut facts = String::new();
         let mut fact = |name: &str, value: &str| {
-            let _ = write!(
+            let _ = writeln!(
                 facts,
-                "<tr><th>{}</th><td>{}</td></tr>\n",
+                "<tr><th>{}</th><td>{}</td></tr>",
                 text(name),
                 text(value)
             );
@@ -130,8 +130,16 @@ impl Statement<'_> {
     }
 
     fn found(&self, fact: &mut impl FnMut(&str, &str)) {
-        let reading = match self.finding {
-            Finding::Reading(reading) => reading,
+        let input = match self.finding {
+            Finding::Reading(reading) => {
+                if let Some(tag) = &reading.tag {
+                    fact("Tag that was read", tag);
+                }
+                if let Some(number) = reading.number {
+                    fact("Number that was read", &number.to_string());
+                }
+                reading.input
+            }
             Finding::Tracing(tracing, names) => {
                 for buyer in &tracing.buyers {
                     let name = names.iter().find(|(number, _)| *number == buyer.number);
@@ -141,16 +149,10 @@ impl Statement<'_> {
                 }
                 fact("Buyers in the ledger", &tracing.num_buyers.to_string());
                 fact("Ways of reading tested", &tracing.num_ways.to_string());
-                &tracing.reading
+                tracing.reading.input
             }
         };
-        if let Some(tag) = &reading.tag {
-            fact("Tag that was read", tag);
-        }
-        if let Some(number) = reading.number {
-            fact("Payload that was read", &number.to_string());
-        }
-        if reading.input == Input::Evidence {
+        if input == Input::Evidence {
             fact(
                 "What was read",
                 "Evidence that somebody measured, not the model itself",

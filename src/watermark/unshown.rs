@@ -1,7 +1,7 @@
 //! Meshes that no scene shows, but an extension or another program may: levels of detail, and what is left over. Each is marked as if it
 //! were a file of its own.
 
-use super::displace::{Used, displacement, write};
+use super::displace::{Displaced, Used, displacement, write};
 use super::read_back::is_seen_at_once;
 use super::report::Unshown;
 use super::{EmbedOptions, Error, Model};
@@ -10,10 +10,12 @@ use crate::carrier::Mark;
 use crate::document::Document;
 use crate::geometry::Leeway;
 use crate::scene::Scene;
-use glam::DVec3;
 
 /// Meshes that are marked, at most: for each the file is read anew.
 const MOST_MARKED: usize = 32;
+
+/// What holds the mark of meshes, by their places in the file.
+pub(super) type UsedByMesh = Vec<(usize, Vec<Used>)>;
 
 /// Marks the meshes of a document that no scene shows, where they share no position with what is marked already; and says which were
 /// marked, and what holds the mark of those.
@@ -24,7 +26,7 @@ pub(super) fn mark_unshown(
     mark: &Mark,
     payload: Option<Payload>,
     options: &EmbedOptions,
-) -> Result<(Vec<Unshown>, Vec<(usize, Vec<Used>)>), Error> {
+) -> Result<(Vec<Unshown>, UsedByMesh), Error> {
     let unshown = Scene::unshown(document).into_iter().enumerate();
     let (mut all, mut used) = (Vec::new(), Vec::new());
     let mut others = Vec::new();
@@ -66,7 +68,7 @@ fn marked(
     mark: &Mark,
     payload: Option<Payload>,
     options: &EmbedOptions,
-) -> Result<Option<(Vec<DVec3>, Vec<Used>)>, Error> {
+) -> Result<Option<Displaced>, Error> {
     let mut document = Document::read(model.bytes, model.files)?;
     let parts = scene.parts();
     let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?);

@@ -73,7 +73,7 @@ fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     add(steps, "all floors and keys", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =
-            "cargo clippy --lib --test suite --features wasm-marks,wasm-informed,wasm-study,wasm-attacks -- -Dwarnings";
+            "cargo clippy --lib --test suite --features wasm-copies,wasm-informed,wasm-study,wasm-attacks -- -Dwarnings";
         log.run(&mut wasm::command(manifest, lint)?, LINT)
     });
     steps.add("wasm tests in Node", &["wasm tests in Chromium"], |log| {
@@ -86,6 +86,15 @@ fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     steps.add("fuzzing", &native, |log| fuzz::fuzz(log, fuzz::SECONDS));
     steps.add("bundlers", &["package and page tests"], |log| {
         log.run(&mut npm_test("run test:bundlers"), TESTS)
+    });
+    steps.add("example marketplace", &["package and page tests"], |log| {
+        let mut npm = |arguments: &str| {
+            let mut npm = npm_test(arguments);
+            npm.current_dir(path("examples/marketplace"));
+            log.run(&mut npm, TESTS)
+        };
+        npm("ci --no-audit --no-fund")?;
+        npm("test")
     });
     let publish = "cargo publish --dry-run --allow-dirty --package meshmark";
     let remedy = "see what cargo says above";

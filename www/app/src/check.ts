@@ -1,12 +1,13 @@
 /** Check: a suspect and a key in, one sentence out; several suspects or keys, and a line for each. */
-import type { DetailedExtraction, Inspection } from "meshmark";
+import type { DetailedExtraction, Inspection, Tracing } from "meshmark";
 import { answersList, chargeWords, isFound, type Line } from "./answers";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { incompleteKeyField, keySource, severalKeys, type KeySource, type NamedKey } from "./key-form";
+import { readLedger, type Ledger } from "./ledger";
 import { isEvidence, renamed, type Found, type Model } from "./model";
-import { actions, card, carrierTable, details, flag, note, numbers, readingRows } from "./outcome";
-import { evidenceOf, read, type Answer } from "./reading";
+import { actions, card, carrierTable, chance, details, flag, note, numbers, readingRows } from "./outcome";
+import { evidenceOf, read, withKey, type Answer } from "./reading";
 import { checkReport, checksReport } from "./report";
 import { save, saveJson } from "./save";
 import { Stage } from "./stage";
@@ -27,28 +28,43 @@ interface Asked {
   model: Model;
   keys: Pick<KeySource, "isInForm">;
   expected: string | null;
+  ledger: Ledger | null;
 }
+
+/** What a tracing comes to, in a few words. */
+const TRACED: Record<Tracing["traced"], string> = {
+  named: "Whose copy it is",
+  nobody: "Your mark is there, but no buyer can be named",
+  "no-mark": "No evidence of this key",
+  "cannot-check": "Cannot check",
+};
 
 export class Check extends View<Stage> {
   protected override readonly areSuspects = true;
   readonly #expected = find<HTMLInputElement>("#expected");
+  readonly #ledgerFile = find<HTMLInputElement>("#ledger");
+  #ledger: Ledger | null = null;
+  /** Until the last ledger that was chosen is read; whether it could be. */
+  #ledgerRead: Promise<boolean> = Promise.resolve(true);
   #asked: Asked | undefined;
 
   constructor(root: HTMLElement) {
     super(root, "Cannot check", Stage);
     watchTag(this.#expected);
     this.#expected.addEventListener("input", () => this.onOther());
+    this.#ledgerFile.addEventListener("change", () => (this.#ledgerRead = this.#takeLedger()));
     find("#save-evidence").addEventListener("click", () => void this.#saveEvidence());
   }
 
   /** Says whether the answer still is to what the form asks. */
   override onOther(): void {
     if (this.#asked) {
-      const { card, model, keys, expected } = this.#asked;
+      const { card, model, keys, expected, ledger } = this.#asked;
       const now = this.#expected.value || null;
       const others = [
         ...(model === this.model ? [] : [this.model ? `the model ${this.model.name}` : "no model"]),
         ...(keys.isInForm() ? [] : ["another key"]),
+        ...(ledger === this.#ledger ? [] : [this.#ledger === null ? "no ledger" : "another ledger"]),
         ...(expected === now ? [] : [now === null ? "no tag to look for" : `the tag ${now} to look for`]),
       ];
       flag(card, others, "This answer is to what it said before.");
@@ -61,8 +77,13 @@ export class Check extends View<Stage> {
     const expected = this.#expected.value || null;
     const problem = keys.length > 0 && expected !== null ? "With several keys the tag is read, not looked for: leave this empty." : tagProblem(this.#expected.value);
     setProblem(this.#expected, problem);
-    const model = this.ready(keyField ?? (problem ? this.#expected : null));
+    const isRead = await this.#ledgerRead;
+    const model = this.ready(keyField ?? (problem ? this.#expected : isRead ? null : this.#ledgerFile));
     if (!model) {
+      return;
+    }
+    if (this.#ledger) {
+      await this.#trace(model, this.#ledger);
       return;
     }
     if (keys.length > 0 || this.several.length > 1) {
@@ -72,7 +93,7 @@ export class Check extends View<Stage> {
     const key = keySource();
     const answer = await this.run(`Checking ${model.name}`, async (task) => read(await engine, model, key.make, expected, task));
     if (answer) {
-      this.#show({ card: this.#card(model, key, expected, answer), model, keys: key, expected });
+      this.#show({ card: this.#card(model, key, expected, answer), model, keys: key, expected, ledger: null });
     }
   }
 
@@ -97,8 +118,67 @@ export class Check extends View<Stage> {
     });
     if (lines) {
       const isInForm = () => (one ? one.isInForm() : severalKeys() === keys);
-      this.#show({ card: this.#linesCard(lines, suspects.length, keys.length, expected), model, keys: { isInForm }, expected });
+      this.#show({ card: this.#linesCard(lines, suspects.length, keys.length, expected), model, keys: { isInForm }, expected, ledger: null });
     }
+  }
+
+  async #takeLedger(): Promise<boolean> {
+    const file = this.#ledgerFile.files?.[0];
+    try {
+      this.#ledger = file ? await readLedger(file) : null;
+      setProblem(this.#ledgerFile, null);
+    } catch (error) {
+      this.#ledger = null;
+      setProblem(this.#ledgerFile, error instanceof Error ? error.message : String(error));
+      return false;
+    } finally {
+      this.onOther();
+    }
+    return true;
+  }
+
+  /** Whose copies a model was made of. */
+  async #trace(model: Model, ledger: Ledger): Promise<void> {
+    const problem = isEvidence(model) || severalKeys().length > 0 || this.several.length > 1 ? "With a ledger, one model is checked with one key; no evidence, and not several." : null;
+    setProblem(this.#ledgerFile, problem);
+    if (problem) {
+      this.#ledgerFile.focus();
+      return;
+    }
+    const key = keySource();
+    const sha256 = this.inspection?.sha256 ?? "unknown";
+    const statement = {
+      ...(key.owner === null ? {} : { owner: key.owner }),
+      date: new Date().toISOString(),
+      files: [{ role: "Suspect", name: model.name, bytes: (model.original ?? model.bytes).length, sha256 }],
+      names: Object.fromEntries(ledger.names),
+      commands: [`meshmark trace ${model.name} --ledger ${ledger.file} ${key.owner === null ? "--key-file KEY" : `--owner ${JSON.stringify(key.owner)} --passphrase-file PASSPHRASE`}`],
+    };
+    const tracing = await this.run(`Tracing ${model.name}`, async (task) => {
+      const client = await engine;
+      const numbers = Float64Array.from(ledger.names.keys());
+      const { signal, onProgress } = task;
+      return withKey(client, key.make, task, (bytes) => client.trace(model.bytes, bytes, numbers, { files: model.buffers, statement, signal, onProgress }));
+    });
+    if (tracing) {
+      this.#show({ card: this.#tracingCard(model, ledger, tracing), model, keys: key, expected: this.#expected.value || null, ledger });
+    }
+  }
+
+  #tracingCard(model: Model, ledger: Ledger, tracing: Tracing): HTMLElement {
+    const { traced, sentence, buyers, numBuyers, statement = "" } = tracing;
+    const buyer = ({ number, lnP }: Tracing["buyers"][number]) => h("li", {}, h("strong", {}, ledger.names.get(number) || `Number ${number}`), h("p", { class: "hint" }, `Copy ${number}; by chance `, chance(lnP)));
+    return card(
+      traced === "named" ? "found" : traced === "nobody" ? "present" : traced === "no-mark" ? "none" : "cannot-check",
+      TRACED[traced],
+      [`${model.name}, with the ${numBuyers} buyers of ${ledger.file}; that they are so many is charged in each chance.`, sentence],
+      h("ul", { class: "copies" }, ...buyers.map(buyer)),
+      ...(traced === "named" ? [h("p", { class: "hint" }, "A copy may have been stolen from its buyer, and whoever keeps the ledger can stamp any number: the report says what this does not prove.")] : []),
+      actions(
+        button("Save report (HTML)", () => save(renamed(model.name, "report.html"), statement, "text/html")),
+        button("Dismiss", () => this.#dismiss()),
+      ),
+    );
   }
 
   /** What is measured of the model: whoever has the key can check it, without the model, and without telling the key. */

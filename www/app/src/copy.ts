@@ -61,7 +61,7 @@ export function filesOf({ name, bytes, images, buffers }: Model): Record<string,
   return { [name]: bytes, ...Object.fromEntries(named) };
 }
 
-function isAlone(model: Model): boolean {
+export function isAlone(model: Model): boolean {
   return Object.keys(filesOf(model)).length === 1;
 }
 

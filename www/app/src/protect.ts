@@ -1,13 +1,15 @@
 /** Protect: a model and a key in, a marked copy out; or several models, and as many copies. */
 import type { Carrier, DetailedExtraction, EmbedOptions, Embedding, Inspection } from "meshmark";
+import { copiesFor, namesIn, type Copies } from "./buyers";
 import { button, find, setProblem } from "./dom";
-import { copyOf, type Asked, type Copy, type Preset } from "./copy";
+import { copyOf, isAlone, type Asked, type Copy, type Preset } from "./copy";
 import { engine } from "./engine";
 import { incompleteKeyField, isKeyComplete, keySource, strangerKey, type KeyMaker, type KeySource } from "./key-form";
-import type { Found, Model } from "./model";
+import { renamed, type Found, type Model } from "./model";
 import { actions, card, note } from "./outcome";
 import { Preview } from "./preview";
 import { detect, withKey } from "./reading";
+import { save } from "./save";
 import { Shelf } from "./shelf";
 import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
@@ -82,6 +84,7 @@ export class Protect extends View<Stage> {
         this.#onOtherLook();
       });
     }
+    find("#make-copies").addEventListener("click", () => void this.#makeCopies());
     this.#keepOne(); // a reload may bring back what was chosen before
     void this.#shelf.restore();
   }
@@ -247,6 +250,46 @@ export class Protect extends View<Stage> {
       this.#shelf.present(false);
       await this.#look(copy);
     }
+  }
+
+  /** One copy for each buyer, in an archive with the ledger. */
+  async #makeCopies(): Promise<void> {
+    const field = find<HTMLTextAreaElement>("#buyers");
+    const [names, first] = [namesIn(field.value), Number(find<HTMLInputElement>("#first-number").value)];
+    const isNumber = Number.isSafeInteger(first) && first >= 1 && first + names.length <= 2 ** 48;
+    const problem =
+      names.length === 0
+        ? "Give the names of the buyers."
+        : !isNumber
+          ? "The number of the first is a whole number from 1 on."
+          : this.model && !isAlone(this.model)
+            ? "Copies for buyers are made of models in one file: save it as .glb first, or use the command line."
+            : null;
+    find("#buyers-error").textContent = problem ?? "";
+    field.toggleAttribute("aria-invalid", problem !== null);
+    const model = this.ready(incompleteKeyField() ?? (problem ? field : null));
+    if (!model || this.isRunning) {
+      return;
+    }
+    this.#dropTrial();
+    const key = keySource();
+    const made = await this.run(`Copies of ${model.name}`, (task) => copiesFor(model, names, first, this.#strength.value as Preset, key.make, task));
+    if (made) {
+      this.#tellCopies(model, made);
+    }
+  }
+
+  #tellCopies(model: Model, { zip, numCopies, numWeaker }: Copies): void {
+    const weaker = numWeaker > 0 ? [`${numWeaker} of them hold less than the mark that was forecasted.`] : [];
+    const file = renamed(model.name, "copies.zip");
+    const copies = card(
+      "found",
+      `${numCopies} ${numCopies === 1 ? "copy" : "copies"}, each read back with its number`,
+      [...weaker, "Check finds out whose copy a model is, with the ledger that is in the archive. It is in no other place: download it before you leave."],
+      actions(button("Download all (.zip)", () => save(file, zip as BlobPart, "application/zip"), "primary")),
+    );
+    this.outcome.tell(copies);
+    this.outcome.present(copies);
   }
 
   #look({ marked, report }: Copy): Promise<void> {

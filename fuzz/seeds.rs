@@ -41,6 +41,9 @@ fn main() -> std::io::Result<()> {
         "surface.mmev",
         &Evidence::from_iter([surface]).to_bytes(),
     )?;
+    let plain = EmbedOptions::default();
+    let plan = prepare(&*to_glb(&shapes::asteroid(16, 24)), &key, &plain).expect("a model for copies");
+    write("plan", "asteroid.mmpl", &plan.0.to_bytes())?;
     write("round_trip", "large", &[29, 39])?;
     write(
         "round_trip",

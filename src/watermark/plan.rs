@@ -185,6 +185,9 @@ impl<'a> Reader<'a> {
                     limit: positive()?,
                     ridge: positive()?,
                 };
+                if !choice.is_possible() {
+                    return Err(PlanError::Damaged);
+                }
                 chosen.push(Chosen {
                     object: (object != WHOLE).then_some(object),
                     choice,

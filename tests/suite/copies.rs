@@ -57,6 +57,13 @@ fn bytes_that_are_no_plan_are_refused() {
     for length in (4..400).chain([bytes.len() - 1]) {
         assert_eq!(code(&bytes[..length]), "plan.damaged", "{length} bytes");
     }
+    // A pitch that no embedder chooses would ask for any number of lattice points.
+    let pitches = [0.05f64, 0.07, 0.1, 0.14, 0.2, 0.3].map(f64::to_le_bytes);
+    let is_pitch = |window: &[u8]| pitches.iter().any(|pitch| pitch == window);
+    let at = bytes.windows(8).position(is_pitch).unwrap();
+    let mut forged = bytes;
+    forged[at..at + 8].copy_from_slice(&1e-9f64.to_le_bytes());
+    assert_eq!(code(&forged), "plan.damaged");
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -15,7 +15,7 @@ pub fn fuzz(log: &mut Log, seconds: u32) -> Result<()> {
     let install = "cargo install --quiet --locked cargo-fuzz --version 0.13.2 --root target/tools";
     let remedy = "install cargo-fuzz yourself, into target/tools";
     log.run(&mut command(install), remedy)?;
-    for target in ["document", "evidence", "round_trip"] {
+    for target in ["document", "evidence", "plan", "record", "round_trip"] {
         let kept = format!("target/fuzz/corpus/{target}");
         fs_err::create_dir_all(path(&kept))?;
         // In seconds: the slowest evidence known takes some.

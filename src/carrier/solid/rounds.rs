@@ -6,9 +6,9 @@
 use super::cluster::clusters;
 use super::freedom::{freedoms, typical};
 use super::lattice::{Lattice, Placement};
-use super::pitch::{AREAS, pitches};
+use super::pitch::{AREAS, PITCHES, pitches};
 use super::problem::Problem;
-use super::quantizer::cosine;
+use super::quantizer::{STEPS, cosine};
 use super::window::{Window, windows};
 use crate::carrier::Host;
 use crate::carrier::qim::curvature;
@@ -103,6 +103,13 @@ pub struct Choice {
     pub limit: f64,
     /// What a displacement costs in the linear problem so that it keeps to the limit.
     pub ridge: f64,
+}
+
+impl Choice {
+    /// Whether an embedder can have made it: others may ask for lattices of any number of points.
+    pub fn is_possible(&self) -> bool {
+        PITCHES.contains(&self.pitch) && STEPS.contains(&self.step)
+    }
 }
 
 /// What one attempt reaches, once a web pipeline has rounded the positions: small steps reach more, and stand less of that.

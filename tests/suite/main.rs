@@ -27,6 +27,7 @@ mod note;
 mod paper;
 mod payload;
 mod pieces;
+mod places;
 mod quality;
 mod reports;
 mod ring;

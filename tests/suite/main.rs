@@ -21,6 +21,7 @@ mod key;
 mod layers;
 mod leeway;
 mod levels;
+mod local;
 mod mesh;
 mod models;
 mod note;

@@ -28,29 +28,29 @@
 //!
 //! The method and its constants are this project's own (docs/REFERENCES.md, "SOLID"). QIM with dither: Chen and Wornell 2001.
 
-mod cluster;
+pub(super) mod cluster;
 mod embed;
 mod field;
 mod frame;
-mod freedom;
+pub(super) mod freedom;
 mod grid;
-mod lattice;
+pub(super) mod lattice;
 mod lists;
 mod measurement;
 mod moments;
 mod objects;
 mod pitch;
 mod problem;
-mod quantizer;
+pub(super) mod quantizer;
 mod reading;
-mod refine;
+pub(super) mod refine;
 mod scan;
 mod search;
 mod store;
 mod strength;
 mod surface;
 mod surfaces;
-mod window;
+pub(super) mod window;
 
 pub use frame::has_axes;
 pub use measurement::{Measurement, Suspect, piece};

@@ -17,6 +17,8 @@ pub struct Piece {
     pub point: DVec3,
     /// Sum of area vectors, outwards.
     pub area: DVec3,
+    /// Sum of `(part - point) . area`.
+    pub moment: f64,
     /// Sum of areas.
     pub weight: f64,
 }
@@ -47,6 +49,7 @@ impl Areas {
                 point: sample.point,
                 area,
                 weight,
+                moment: 0.0,
             }));
         }
         let mut levels = vec![gathered(&parts, finest)];
@@ -55,6 +58,16 @@ impl Areas {
             levels.push(gathered(&last.pieces, 2.0 * last.cell));
         }
         Areas(levels)
+    }
+
+    /// What is left where all beyond a plane is cut off: whose distance along a direction is more than so much.
+    pub fn cut(&self, direction: DVec3, distance: f64) -> Areas {
+        let is_kept = |piece: &&Piece| piece.point.dot(direction) <= distance;
+        let level = |level: &Level| Level {
+            cell: level.cell,
+            pieces: level.pieces.iter().filter(is_kept).copied().collect(),
+        };
+        Areas(self.0.iter().map(level).collect())
     }
 
     /// The levels, the finest first.
@@ -85,11 +98,15 @@ fn gathered(parts: &[Piece], cell: f64) -> Level {
         let mut sum = Piece::default();
         for &(_, index) in run {
             let part = &parts[index as usize];
-            sum.point += (part.point - low) * part.weight;
+            let offset = part.point - low;
+            sum.point += offset * part.weight;
             sum.area += part.area;
+            sum.moment += part.moment + offset.dot(part.area);
             sum.weight += part.weight;
         }
-        sum.point = low + sum.point / sum.weight;
+        let centre = sum.point / sum.weight;
+        sum.point = low + centre;
+        sum.moment -= centre.dot(sum.area);
         (sum.weight > 0.0).then_some(sum)
     });
     Level {

@@ -19,7 +19,7 @@ mod grid;
 mod tensor;
 
 pub use areas::{Areas, Level, Piece};
-pub use tensor::{Invariant, SUPPORT, Tensor, tensor};
+pub use tensor::{Invariant, SUPPORT, Tensor, near, tensor};
 
 use super::linear::symmetric_eigen;
 use super::pose::eigen;
@@ -28,7 +28,6 @@ use crate::order::order_by;
 use glam::{DMat3, DVec3};
 use grid::{Start, starts};
 use std::ops::Range;
-use tensor::near;
 
 /// A place.
 #[derive(Clone, Copy, Debug, PartialEq)]

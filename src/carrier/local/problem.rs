@@ -106,7 +106,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        for row in 0..ROWS_OF_PLACE {
+        let rows = (0..ROWS_OF_PLACE).map(|row| {
             let pairs = slots.iter().map(|(&vertex, &slot)| {
                 let freedom = self.freedom[vertex as usize];
                 (vertex, pushes[slot][row] * freedom)
@@ -114,9 +114,10 @@ impl<'a> Problem<'a> {
             let row: Row = pairs.collect();
             let square: f64 = row.iter().map(|(_, push)| push.length_squared()).sum();
             let scale = length / square.sqrt().max(f64::MIN_POSITIVE);
-            let scaled = row.into_iter().map(|(vertex, push)| (vertex, push * scale));
-            self.rows.push(scaled.collect());
-        }
+            row.into_iter().map(|(v, push)| (v, push * scale)).collect()
+        });
+        let rows: Vec<Row> = rows.collect();
+        self.rows.extend(rows);
     }
 
     /// Each row's inner product with itself.

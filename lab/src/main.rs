@@ -13,6 +13,7 @@ mod found;
 mod grid;
 mod informed;
 mod journal;
+mod local;
 mod models;
 mod oracle;
 mod plot;
@@ -90,8 +91,11 @@ struct Arguments {
     /// Instead of the grid: generated models in a new folder, marked with a key that is drawn for them, for outsiders to break.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     challenge: Option<PathBuf>,
-    /// Of --wild: subtle, balanced, strong, or a fraction of the diagonal.
-    #[arg(long, default_value = "balanced", requires = "wild")]
+    /// Instead of the grid: pieces of plain models that LOCAL alone marks, cut out and then changed, and so many wrong keys; prints tables.
+    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    local: Option<u64>,
+    /// Of --wild and --local: subtle, balanced, strong, or a fraction of the diagonal.
+    #[arg(long, default_value = "balanced")]
     strength: Strength,
     /// Another file to write; plots are in a folder beside it.
     #[arg(long)]
@@ -172,6 +176,10 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return trace::table(models, &Seed::new(seed));
+    }
+    if let Some(num_keys) = arguments.local {
+        let (models, _) = models::all(arguments.models.as_deref())?;
+        return local::tables(models, arguments.strength, &Seed::new(seed), num_keys);
     }
     let name = match arguments.false_positives {
         _ if arguments.study => "STUDY.md",

@@ -6,6 +6,7 @@
 
 pub mod direction;
 mod error;
+pub mod local;
 pub mod qim;
 mod reading;
 pub mod ring;

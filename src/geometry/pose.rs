@@ -2,6 +2,7 @@
 //!
 //! Moments are integrals over the surface, exact for triangles, so tessellation does not matter. O(F).
 
+use super::linear::symmetric_eigen;
 use super::orientation::oriented;
 use crate::mesh::Mesh;
 use glam::{DMat3, DVec3};
@@ -212,30 +213,10 @@ fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// Eigenvalues in decreasing order and a right-handed basis of eigenvectors of a symmetric matrix, by Jacobi's cyclic
-/// rotations (Golub and Van Loan, Matrix Computations, 8.5).
-fn eigen(matrix: DMat3) -> (DVec3, DMat3) {
-    let mut a = matrix.to_cols_array_2d();
-    let mut v = DMat3::IDENTITY.to_cols_array_2d();
-    for _ in 0..12 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[p][q] == 0.0 {
-                continue;
-            }
-            let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = tau.signum() / (tau.abs() + (1.0 + tau * tau).sqrt());
-            let c = 1.0 / (1.0 + t * t).sqrt();
-            let s = t * c;
-            for row in &mut a {
-                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-            }
-            for k in 0..3 {
-                (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-                (v[p][k], v[q][k]) = (c * v[p][k] - s * v[q][k], s * v[p][k] + c * v[q][k]);
-            }
-        }
-    }
-    let mut pairs = [0, 1, 2].map(|i| (a[i][i], DVec3::from_array(v[i])));
+/// Eigenvalues in decreasing order and a right-handed basis of eigenvectors of a symmetric matrix.
+pub(super) fn eigen(matrix: DMat3) -> (DVec3, DMat3) {
+    let (values, vectors) = symmetric_eigen(matrix.to_cols_array_2d());
+    let mut pairs = [0, 1, 2].map(|i| (values[i], DVec3::from_array(vectors[i])));
     pairs.sort_by(|x, y| y.0.total_cmp(&x.0));
     let [(x, first), (y, second), (z, _)] = pairs;
     (

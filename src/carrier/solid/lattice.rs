@@ -14,6 +14,8 @@ pub struct Lattice {
     /// In pitches.
     shift: DVec3,
     symbols: Prf,
+    /// Which symbol the second word of an address selects.
+    select: fn(u64) -> Symbol,
     /// Other dithers for all symbols but pilots: what may not depend on them must stay as it is.
     #[cfg(test)]
     redrawn: Option<Prf>,
@@ -22,7 +24,12 @@ pub struct Lattice {
 impl Lattice {
     /// A rotation uniform on SO(3) (Shoemake 1992) and a shift uniform in one cell.
     pub fn of(key: &Key) -> Lattice {
-        let place = key.prf("solid/lattice");
+        Lattice::labelled(key, ["solid/lattice", "solid"], Symbol::select)
+    }
+
+    /// The same by other sub-keys, for where it lies and for what its points hold, and with another share of pilots.
+    pub fn labelled(key: &Key, [place, symbols]: [&str; 2], select: fn(u64) -> Symbol) -> Lattice {
+        let place = key.prf(place);
         let uniform = |address: u64| unit(place.at(address).0);
         let (a, b, c) = (uniform(0), TAU * uniform(1), TAU * uniform(2));
         let (p, q) = ((1.0 - a).sqrt(), a.sqrt());
@@ -35,7 +42,8 @@ impl Lattice {
         Lattice {
             rotation: DMat3::from_quat(turn),
             shift: DVec3::new(uniform(3), uniform(4), uniform(5)) - DVec3::splat(0.5),
-            symbols: key.prf("solid"),
+            symbols: key.prf(symbols),
+            select,
             #[cfg(test)]
             redrawn: None,
         }
@@ -48,6 +56,11 @@ impl Lattice {
             redrawn: Some(other.prf("x")),
             ..self
         }
+    }
+
+    /// The lattice coordinates of the frame's centre.
+    pub fn centre(&self) -> DVec3 {
+        -self.shift
     }
 
     /// The lattice in a frame whose axes are turned.
@@ -68,7 +81,7 @@ impl Lattice {
         let part = |index: i32| (index + (1 << 19)) as u64 & ((1 << 20) - 1);
         let address = part(i) << 40 | part(j) << 20 | part(k);
         let (dither, choice) = self.symbols.at(address);
-        let symbol = Symbol::select(choice);
+        let symbol = (self.select)(choice);
         #[cfg(test)]
         if let Some(redrawn) = self.redrawn.as_ref().filter(|_| symbol != Symbol::Pilot) {
             return (unit(redrawn.at(address).0), symbol);

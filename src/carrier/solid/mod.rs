@@ -34,24 +34,24 @@
 //! The method and its constants are this project's own (docs/REFERENCES.md, "SOLID"). QIM with dither: Chen and Wornell 2001.
 
 mod again;
-mod cluster;
+pub(super) mod cluster;
 mod embed;
 mod field;
 mod frame;
-mod freedom;
+pub(super) mod freedom;
 mod grid;
 mod informed;
-mod lattice;
+pub(super) mod lattice;
 mod lists;
 mod measurement;
 mod moments;
 mod objects;
 mod pitch;
 mod problem;
-mod quantizer;
+pub(super) mod quantizer;
 mod reading;
 mod recorded;
-mod refine;
+pub(super) mod refine;
 mod rounds;
 mod scan;
 mod search;
@@ -60,7 +60,7 @@ mod strength;
 mod stretch;
 mod surface;
 mod surfaces;
-mod window;
+pub(super) mod window;
 
 pub use again::Prepared;
 pub use frame::has_axes;

@@ -150,10 +150,10 @@ impl Caught {
     }
 }
 
-/// A table with a line for each row, of the usual models that hold numbers. Those without axes of their own are left out: a reading scans for them,
-/// which takes seconds, and there are some thousand readings.
+/// A table with a line for each row, of the usual plain models that hold numbers. A reading of the others scans for axes or looks at many
+/// pieces, which takes seconds, and there are some thousand readings. What is known so far is told on the way.
 pub fn table(mut models: Vec<Model>, seed: &Seed) -> Result<String, String> {
-    models.retain(|model| model.size <= Size::Usual && model.class != Class::Symmetric);
+    models.retain(|model| model.size <= Size::Usual && model.class == Class::Plain);
     let rows = rows()?;
     let ledgers = LEDGERS.map(|buyers| (1..=buyers).collect::<Vec<u64>>());
     let mut text = format!(
@@ -204,6 +204,7 @@ pub fn table(mut models: Vec<Model>, seed: &Seed) -> Result<String, String> {
                 sum.distance / sum.num_models.max(1) as f64
             );
         }
+        eprintln!("{text}");
     }
     let _ = write!(
         text,

@@ -14,8 +14,10 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+type Change = fn(&Mesh) -> Mesh;
+
 /// What is done to a stretched copy, so that RING is gone.
-const THEN: [(&str, fn(&Mesh) -> Mesh); 3] = [
+const THEN: [(&str, Change); 3] = [
     ("30 % fewer edges", |mesh| simplify(mesh, 0.3)),
     ("half of the edges", |mesh| simplify(mesh, 0.5)),
     ("remeshed", |mesh| remesh(mesh, 0.01)),

@@ -9,6 +9,7 @@ type Same<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ? 
 
 export const sameFunctions: { [F in keyof Contract]: Same<Contract[F], Package[F]> } = {
   deriveKey: true,
+  workKey: true,
   embed: true,
   measure: true,
   measureMesh: true,

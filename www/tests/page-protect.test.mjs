@@ -77,6 +77,22 @@ for (const [name, source] of [
   });
 }
 
+unseen("a work has a key of its own, and is found with its title alone", async () => {
+  await dropped(onDisk("rock.glb", await meshmark.demoModel()));
+  await page.getByLabel(/Title of the work/).fill("Rock");
+  await mark();
+  assert.equal(await headline(), "Your mark is in the copy");
+  await result().getByText("Checking a copy needs it, as it is written here.").waitFor();
+  const copy = await saved(/^Download/);
+  await page.getByRole("tab", { name: "Check" }).click();
+  await dropped(copy);
+  await check();
+  assert.equal(await headline(), "Your mark was found");
+  await page.getByLabel(/Title of the work/).fill("");
+  await check();
+  assert.equal(await headline(), "No evidence of this key");
+});
+
 unseen("a .gltf with its folder is dropped, marked, and downloaded as an archive", async () => {
   const io = new NodeIO();
   const { json, resources } = await io.writeJSON(await io.readBinary(small), { basename: "scene" });

@@ -49,6 +49,7 @@ export function copyCard(copy: Copy, { onSave, onCheck, onDismiss, ofThisVisit }
     ),
     h("h3", {}, "To keep beside the original"),
     h("p", { class: "hint" }, "Keep the original to yourself, with the report and the key: together they show later what you marked, when, and how. Whoever has the key file has the key."),
+    ...(work ? [h("p", { class: "hint" }, "The key file that is saved here is this work’s: use it without a title.")] : []),
     actions(
       button("Save report (JSON)", async () => saveJson(renamed(marked.name, "report.json"), await reportOf(copy))),
       ...(ofThisVisit ? [button("Save key file", ofThisVisit.onSaveKey)] : []),

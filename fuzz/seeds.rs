@@ -8,7 +8,7 @@ use meshmark::internals::carrier::{Measurement, ring, solid};
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::shapes;
 use meshmark::internals::scene::{Scene, to_glb};
-use meshmark::{Evidence, Files, Key};
+use meshmark::{EmbedOptions, Evidence, Files, Key, prepare};
 use std::fs;
 use std::path::Path;
 use support::fixtures::{gallery, marked};

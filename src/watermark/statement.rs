@@ -46,7 +46,7 @@ pub struct Statement<'a> {
 }
 
 /// Decimal digits of a chance beyond which none is told: the keyed function that all rests on has a key of 128 bits.
-const MOST_DIGITS: f64 = 38.0;
+const MOST_DIGITS: u32 = 38;
 
 impl Statement<'_> {
     /// The statement as a whole HTML document.
@@ -195,11 +195,11 @@ impl Statement<'_> {
 
 /// A bound in words, and as a power of ten.
 fn chance(ln_p: f64) -> String {
-    let digits = (-ln_p / LN_10).floor();
+    let digits = (-ln_p / LN_10) as u32;
     if digits > MOST_DIGITS {
         return format!("less than 1 in 10^{MOST_DIGITS}, beyond which nothing is told");
     }
-    let words = match digits as u32 {
+    let words = match digits {
         0..=5 => "",
         6..=8 => "less than one in a million, ",
         9..=11 => "less than one in a billion, ",

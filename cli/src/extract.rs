@@ -17,10 +17,10 @@ pub struct Extract {
     suspect: Suspect,
     /// The model as it was before it was marked: with it a copy is found that has lost what INPUT alone is read by. It has to be older than
     /// the key's use on it, or the answer proves nothing to others
-    #[arg(long, value_name = "FILE", conflicts_with = "evidence")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "report"])]
     original: Option<PathBuf>,
     /// What `embed --record` wrote, in the stead of the original
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original", "report"])]
     record: Option<PathBuf>,
     #[command(flatten)]
     owner: Owner,

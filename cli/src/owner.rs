@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub struct Owner {
     /// The owner's name, which with the passphrase makes the key
-    #[arg(long, value_name = "NAME", required_unless_present = "key_file")]
+    #[arg(long, value_name = "NAME")]
     owner: Option<String>,
     /// File that holds the passphrase (one line end at its end is dropped)
     #[arg(long, value_name = "FILE", conflicts_with = "key_file")]
@@ -31,17 +31,24 @@ impl Owner {
 
     /// What somebody has to say on the command line to give the same key: nothing of what is secret.
     pub fn arguments(&self) -> String {
-        match &self.owner {
+        let owner = match &self.owner {
             Some(owner) => format!("--owner {owner:?} --passphrase-file PASSPHRASE"),
             None => "--key-file KEY".to_owned(),
+        };
+        match &self.work {
+            Some(work) => format!("{owner} --work {work:?}"),
+            None => owner,
         }
     }
 
     pub fn key(&self) -> Result<Key, Failure> {
         let key = match (&self.key_file, &self.owner) {
             (Some(file), _) => Key::from_bytes(&load(file)?),
-            (None, owner) => {
-                Key::from_passphrase(owner.as_deref().unwrap_or_default(), &self.passphrase()?)
+            (None, Some(owner)) => Key::from_passphrase(owner, &self.passphrase()?),
+            // `test` needs an owner only beside works, so that this is not said by the list of arguments.
+            (None, None) => {
+                let words = "whose key is it? Give --owner NAME or --key-file FILE";
+                return Err(Failure::Words(words.to_owned()));
             }
         };
         let key = key.map_err(Failure::of)?;

@@ -19,7 +19,7 @@ pub struct StatementArgument {
     date: Option<String>,
     /// A file that the report names as the original
     #[arg(long, value_name = "FILE", requires = "report")]
-    original: Option<PathBuf>,
+    report_original: Option<PathBuf>,
 }
 
 impl StatementArgument {
@@ -37,7 +37,7 @@ impl StatementArgument {
         };
         let mut looked_at = vec![("Suspect", input)];
         looked_at.extend(
-            self.original
+            self.report_original
                 .iter()
                 .map(|path| ("Original", path.as_path())),
         );

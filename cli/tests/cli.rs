@@ -625,7 +625,6 @@ fn cli_usage_errors_exit_with_2() {
     for arguments in [
         "",
         "embed",
-        "embed a b --tag X",
         "extract model.glb --passphrase secret",
         "frobnicate",
     ] {
@@ -633,6 +632,9 @@ fn cli_usage_errors_exit_with_2() {
         assert_eq!(code, 2, "{arguments}");
         assert!(said.contains("Usage"), "{said}");
     }
+    let (code, _, said) = here.run("embed model.glb b --tag X");
+    assert_eq!(code, 2);
+    assert!(said.contains("--owner NAME or --key-file FILE"), "{said}");
 }
 
 #[test]
@@ -863,7 +865,8 @@ fn a_reading_is_stated_too() {
     let folder = Folder::new("statement");
     let (code, _, _) = folder.run(&format!("embed model.glb marked.glb --tag ADA-1 {ADA}"));
     assert_eq!(code, 0);
-    let extract = format!("extract marked.glb --report report.html --original model.glb {ADA}");
+    let extract =
+        format!("extract marked.glb --report report.html --report-original model.glb {ADA}");
     assert_eq!(folder.run(&extract).0, 0);
     let report = fs::read_to_string(folder.path("report.html")).unwrap();
     for words in [

@@ -35,7 +35,7 @@ pub struct Statement<'a> {
     pub finding: Finding<'a>,
     /// Whose key it was, as they call themselves.
     pub owner: Option<&'a str>,
-    /// Of the key: [`Key::commitment`].
+    /// Of the key: [`Key::commitment`](crate::Key::commitment).
     pub commitment: &'a str,
     /// What was looked at, the suspect first.
     pub files: &'a [StatedFile<'a>],

@@ -41,25 +41,17 @@ impl StatementArgument {
                 .iter()
                 .map(|path| ("Original", path.as_path())),
         );
-        let mut read = Vec::new();
+        let mut files = Vec::new();
         for (role, path) in looked_at {
             let bytes = load(path)?;
-            let name = path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
-            read.push((role, name, bytes.len() as u64, sha256(&bytes)));
+            let name = path.file_name().unwrap_or_default();
+            files.push(StatedFile {
+                role: role.to_owned(),
+                name: name.to_string_lossy().into_owned(),
+                bytes: bytes.len() as u64,
+                sha256: sha256(&bytes),
+            });
         }
-        let files: Vec<StatedFile> = read
-            .iter()
-            .map(|(role, name, bytes, sha256)| StatedFile {
-                role,
-                name,
-                bytes: *bytes,
-                sha256,
-            })
-            .collect();
         let commitment = key.commitment();
         let statement = Statement {
             finding,

@@ -144,22 +144,13 @@ fn stated(finding: Finding, key: &Key, asked: &JsValue) -> Result<String, JsValu
     let mut files = Vec::new();
     let given = get(object, "files")?;
     for file in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {
-        files.push((
-            words(&file, "role")?.unwrap_or_default(),
-            words(&file, "name")?.unwrap_or_default(),
-            get(&file, "bytes")?.as_f64().unwrap_or_default() as u64,
-            words(&file, "sha256")?.unwrap_or_default(),
-        ));
+        files.push(StatedFile {
+            role: words(&file, "role")?.unwrap_or_default(),
+            name: words(&file, "name")?.unwrap_or_default(),
+            bytes: get(&file, "bytes")?.as_f64().unwrap_or_default() as u64,
+            sha256: words(&file, "sha256")?.unwrap_or_default(),
+        });
     }
-    let files: Vec<StatedFile> = files
-        .iter()
-        .map(|(role, name, bytes, sha256)| StatedFile {
-            role,
-            name,
-            bytes: *bytes,
-            sha256,
-        })
-        .collect();
     let given = get(object, "commands")?;
     let mut commands = Vec::new();
     for line in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {

@@ -43,7 +43,7 @@ pub enum RecordError {
     Version(u32),
     /// Of another key.
     #[error(
-        "the record was made with another key: check the owner's name and the passphrase; with the original no record is needed"
+        "the record was made with another key: check the owner's name, the passphrase and the title of the work; with the original no record is needed"
     )]
     OtherKey,
     /// Changed, or cut short.

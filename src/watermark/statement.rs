@@ -6,16 +6,16 @@ use std::f64::consts::LN_10;
 use std::fmt::Write;
 
 /// A file that a statement is about.
-#[derive(Clone, Copy, Debug)]
-pub struct StatedFile<'a> {
+#[derive(Clone, Debug)]
+pub struct StatedFile {
     /// What it is to the reader: `Suspect`, `Original`.
-    pub role: &'a str,
+    pub role: String,
     /// Its name.
-    pub name: &'a str,
+    pub name: String,
     /// Its size in bytes.
     pub bytes: u64,
     /// SHA-256 of it, in hexadecimal digits.
-    pub sha256: &'a str,
+    pub sha256: String,
 }
 
 /// What was found.
@@ -38,7 +38,7 @@ pub struct Statement<'a> {
     /// Of the key: [`Key::commitment`](crate::Key::commitment).
     pub commitment: &'a str,
     /// What was looked at, the suspect first.
-    pub files: &'a [StatedFile<'a>],
+    pub files: &'a [StatedFile],
     /// When it was looked at, as the caller puts it: nothing here knows the time.
     pub date: Option<&'a str>,
     /// Command lines that repeat it.
@@ -66,9 +66,9 @@ impl Statement<'_> {
         }
         fact("Commitment to the key", self.commitment);
         for file in self.files {
-            fact(file.role, file.name);
+            fact(&file.role, &file.name);
             fact("Its size", &format!("{} bytes", file.bytes));
-            fact("Its SHA-256", file.sha256);
+            fact("Its SHA-256", &file.sha256);
         }
         if let Some(date) = self.date {
             fact("Date given", date);

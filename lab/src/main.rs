@@ -26,6 +26,7 @@ mod seed;
 mod study;
 mod surface;
 mod trace;
+mod vectors;
 mod wild;
 
 use clap::Parser;
@@ -91,6 +92,9 @@ struct Arguments {
     /// Instead of the grid: generated models in a new folder, marked with a key that is drawn for them, for outsiders to break.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     challenge: Option<PathBuf>,
+    /// Instead of the grid: the host and the marked model of docs/VECTORS.md, in a new folder.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    vectors: Option<PathBuf>,
     /// Instead of the grid: pieces of plain models that LOCAL alone marks, cut out and then changed, and so many wrong keys; prints tables.
     #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     local: Option<u64>,
@@ -157,6 +161,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     }
     if let Some(folder) = &arguments.challenge {
         return challenge::write(models::generated().collect(), folder);
+    }
+    if let Some(folder) = &arguments.vectors {
+        return vectors::write(folder);
     }
     if arguments.adversary {
         let (models, _) = models::all(arguments.models.as_deref())?;

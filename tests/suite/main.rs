@@ -7,6 +7,7 @@ mod attack;
 #[cfg(not(target_arch = "wasm32"))]
 // a hundred thousand keys, and nothing that differs between targets
 mod bound;
+mod c2pa;
 mod code;
 mod copies;
 mod curvature;
@@ -43,5 +44,6 @@ mod support;
 mod suspects;
 mod text;
 mod trace;
+mod vectors;
 mod watermark;
 mod wild;

@@ -91,12 +91,10 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
   static formAssociated = true;
   static observedAttributes = ["disabled", "required"];
 
-  /** The key's 32 bytes, or what gives them. */
-  declare ownerKey: KeySource | undefined;
-
   protected readonly internals = this.attachInternals();
   readonly #defaults: Strings;
   #strings: Partial<Strings> = {};
+  #ownerKey: KeySource | undefined;
   readonly #label = document.createElement("span");
   readonly #input = document.createElement("input");
   readonly #progress = document.createElement("progress");
@@ -130,11 +128,13 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
     label.append(this.#label, document.createElement("br"), this.#input);
     root.append(label, this.#progress, this.#status);
     this.#input.addEventListener("change", () => void this.choose(this.#input.files?.[0]));
-    // A page may set this before it has loaded this module.
-    if (Object.hasOwn(this, "strings")) {
-      const { strings } = this;
-      delete (this as { strings?: unknown }).strings;
-      this.strings = strings;
+    // A page may set these before it has loaded this module: then they hide what the class has.
+    for (const name of ["ownerKey", "strings"] as const) {
+      if (Object.hasOwn(this, name)) {
+        const value = this[name];
+        delete (this as Record<string, unknown>)[name];
+        (this as Record<string, unknown>)[name] = value;
+      }
     }
   }
 
@@ -150,7 +150,7 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
 
   attributeChangedCallback(): void {
     this.#input.disabled = this.matches(":disabled");
-    this.#input.required = this.hasAttribute("required");
+    this.#input.required = this.required;
     this.#validate();
   }
 
@@ -161,6 +161,15 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
   formResetCallback(): void {
     void this.choose(undefined);
     this.#input.value = "";
+  }
+
+  /** The key's 32 bytes, or what gives them. */
+  get ownerKey(): KeySource | undefined {
+    return this.#ownerKey;
+  }
+
+  set ownerKey(key: KeySource | undefined) {
+    this.#ownerKey = key;
   }
 
   /** Sentences in other words or another language; what is left out keeps its own. */
@@ -180,6 +189,27 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
 
   get name(): string {
     return this.getAttribute("name") ?? "";
+  }
+
+  // Frameworks set what an element has as a property.
+  set name(name: string) {
+    this.setAttribute("name", name);
+  }
+
+  get required(): boolean {
+    return this.hasAttribute("required");
+  }
+
+  set required(isRequired: boolean) {
+    this.toggleAttribute("required", isRequired);
+  }
+
+  get disabled(): boolean {
+    return this.hasAttribute("disabled");
+  }
+
+  set disabled(isDisabled: boolean) {
+    this.toggleAttribute("disabled", isDisabled);
   }
 
   get validity(): ValidityState {
@@ -222,10 +252,11 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
     };
     this.#begin();
     try {
-      if (!this.ownerKey) {
+      const source = this.#ownerKey;
+      if (!source) {
         throw new MeshmarkError("element.no-key", "No key was given.");
       }
-      const key = typeof this.ownerKey === "function" ? await this.ownerKey() : this.ownerKey;
+      const key = typeof source === "function" ? await source() : source;
       const model = new Uint8Array(await file.arrayBuffer());
       const client = await sharedClient();
       const done = await this.work(client, file, model, key, signal, onProgress);
@@ -279,7 +310,7 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
   }
 
   #validate(): void {
-    const isMissing = !this.#hasValue && (this.hasAttribute("required") || this.#file !== undefined);
+    const isMissing = !this.#hasValue && (this.required || this.#file !== undefined);
     if (isMissing) {
       this.internals.setValidity({ valueMissing: true }, this.text("missing"), this.#input);
     } else {

@@ -122,12 +122,9 @@ export function shop(db, key) {
     );
   });
 
-  // As the command line's `trace --ledger` reads it.
-  app.get("/moderation/ledger.csv", (context) => {
-    const sales = db.prepare("SELECT number, buyer, date, sha256 FROM sales ORDER BY number").all();
-    const lines = sales.map(({ number, buyer, date, sha256 }) => `${number},"${buyer.replaceAll('"', '""')}",${date},${sha256}\n`);
-    return context.body(`number,name,date,sha256\n${lines.join("")}`, 200, { "Content-Type": "text/csv; charset=utf-8", "Content-Disposition": "attachment" });
-  });
+  app.get("/moderation/ledger.csv", (context) =>
+    context.body(ledgerOf(db), 200, { "Content-Type": "text/csv; charset=utf-8", "Content-Disposition": "attachment" }),
+  );
 
   // The statement is a page of its own, without scripts: to print, to keep, to send.
   app.post("/moderation", async (context) => {
@@ -157,13 +154,21 @@ export function shop(db, key) {
   return app;
 }
 
+/** All sales, as the command line's `trace --ledger` reads them. */
+function ledgerOf(db) {
+  const sales = db.prepare("SELECT number, buyer, date, sha256 FROM sales ORDER BY number").all();
+  const lines = sales.map(({ number, buyer, date, sha256 }) => `${number},"${buyer.replaceAll('"', '""')}",${date},${sha256}\n`);
+  return `number,name,date,sha256\n${lines.join("")}`;
+}
+
 /** Whose copy a file is, among all sales. */
 async function traced(db, key, name, bytes) {
   const sales = db.prepare("SELECT number, buyer FROM sales").all();
+  const stated = (role, name, bytes) => ({ role, name, bytes: bytes.length, sha256: createHash("sha256").update(bytes).digest("hex") });
   const statement = {
     owner: "the shop",
     date: new Date().toISOString(),
-    files: [{ role: "Suspect", name, bytes: bytes.length, sha256: createHash("sha256").update(bytes).digest("hex") }],
+    files: [stated("Suspect", name, bytes), stated("Ledger", "ledger.csv", Buffer.from(ledgerOf(db)))],
     commands: ["meshmark trace SUSPECT --ledger ledger.csv --key-file data/key"],
     names: Object.fromEntries(sales.map(({ number, buyer }) => [number, buyer])),
   };

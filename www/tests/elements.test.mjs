@@ -142,6 +142,17 @@ test("the keyboard reaches them, and stops at what is missing", { timeout: 60_00
   assert.deepEqual(await focused(), ["meshmark-protect", "file"], "the browser leads to the field that is missing");
 });
 
+test("what was not found is not shown as good news", { timeout: 120_000 }, async () => {
+  await page.goto(origin);
+  await page.waitForFunction(() => globalThis.heard);
+  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await heard(page, "meshmark-verdict");
+  const status = page.locator("meshmark-check").getByRole("status");
+  assert.match(await status.textContent(), /^No evidence of this key\./);
+  const colours = await status.evaluate((status) => [getComputedStyle(status).color, getComputedStyle(status.getRootNode().host).color]);
+  assert.equal(colours[0], colours[1]);
+});
+
 test("they work in a frame", { timeout: 240_000 }, async () => {
   await page.goto(`${origin}/framed`);
   const frame = page.frames()[1];

@@ -60,7 +60,7 @@ const STYLE = `
   progress[hidden] { display: none; }
   [part="status"] { margin: var(--meshmark-gap, 0.35em) 0 0; min-height: 1.4em; }
   [part="status"][data-state="failed"] { color: var(--meshmark-bad, #a30000); }
-  [part="status"][data-state="done"] { color: var(--meshmark-good, #006429); }
+  [part="status"][data-state="good"] { color: var(--meshmark-good, #006429); }
 `;
 
 let sheet: CSSStyleSheet | undefined;
@@ -261,7 +261,7 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
       const client = await sharedClient();
       const done = await this.work(client, file, model, key, signal, onProgress);
       if (isLast()) {
-        this.#settle(done.value, "done", done.words);
+        this.#settle(done.value, done.isGood ? "good" : "told", done.words);
         this.dispatchEvent(new CustomEvent(done.event, { bubbles: true, composed: true, detail: done.detail }));
       }
     } catch (error) {
@@ -281,7 +281,7 @@ abstract class Control<Strings extends { choose: Words; working: Words; failed: 
     key: Uint8Array,
     signal: AbortSignal,
     onProgress: (fraction: number) => void,
-  ): Promise<{ value: File | string; words: string; event: string; detail: unknown }>;
+  ): Promise<{ value: File | string; words: string; isGood: boolean; event: string; detail: unknown }>;
 
   protected text(name: keyof Strings, values: Record<string, string> = {}): string {
     const words = (this.#strings[name] ?? this.#defaults[name]) as Words;
@@ -354,7 +354,8 @@ export class MeshmarkProtect extends Control<ProtectStrings> {
     });
     const value = new File([marked as BlobPart], file.name, { type: "model/gltf-binary" });
     const detail: Protected = { file: value, report };
-    return { value, words: this.text(report.isFragile ? "fragile" : "done"), event: "meshmark-protected", detail };
+    const isGood = !report.isFragile;
+    return { value, words: this.text(isGood ? "done" : "fragile"), isGood, event: "meshmark-protected", detail };
   }
 }
 
@@ -383,7 +384,8 @@ export class MeshmarkCheck extends Control<CheckStrings> {
       onProgress: (stage, fraction) => onProgress((stages.indexOf(stage) + fraction) / stages.length),
     });
     const words = this.text("verdict", { verdict: detail.verdict, sentence: detail.sentence, reason: detail.reason ?? "", tag: detail.tag ?? "" });
-    return { value: detail.verdict as string, words, event: "meshmark-verdict", detail };
+    const isGood = detail.verdict === "found" || detail.verdict === "present";
+    return { value: detail.verdict as string, words, isGood, event: "meshmark-verdict", detail };
   }
 }
 

@@ -4,7 +4,7 @@ import { randomBytes } from "node:crypto";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { serve } from "@hono/node-server";
-import Database from "better-sqlite3";
+import Database from "libsql";
 import { shop } from "./shop.mjs";
 
 const folder = process.env.SHOP_DATA ?? fileURLToPath(new URL("data", import.meta.url));

@@ -4,16 +4,20 @@ import { readFileSync } from "node:fs";
 import { createHash } from "node:crypto";
 import { fileURLToPath } from "node:url";
 import { Hono } from "hono";
-import { html } from "hono/html";
+import { bodyLimit } from "hono/body-limit";
+import { html, raw } from "hono/html";
 import { call } from "./meshmark.mjs";
 
 const POLICY =
-  "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'";
+  "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; img-src 'self'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'";
 
 /** Uploads are not larger than this. */
 const MOST_BYTES = 50e6;
 
-const TYPES = { js: "text/javascript", css: "text/css", wasm: "application/wasm" };
+/** So many sales are shown to moderators. */
+const SHOWN_SALES = 50;
+
+const TYPES = { js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm" };
 
 /** The shop: its database, and the key that stamps downloads. */
 export function shop(db, key) {
@@ -24,24 +28,26 @@ export function shop(db, key) {
   const app = new Hono();
 
   app.use(async (context, next) => {
-    if (Number(context.req.header("content-length") ?? 0) > MOST_BYTES) {
-      return context.text("The file is too large.", 413);
-    }
     await next();
-    context.header("Content-Security-Policy", POLICY);
+    if (!context.res.headers.has("Content-Security-Policy")) {
+      context.header("Content-Security-Policy", POLICY);
+    }
     context.header("X-Content-Type-Options", "nosniff");
   });
+  app.use(bodyLimit({ maxSize: MOST_BYTES, onError: (context) => context.html(page("Too large", html`<p>Files of up to ${MOST_BYTES / 1e6} MB are taken.</p>`), 413) }));
 
   app.get("/", (context) => {
     const models = db.prepare("SELECT id, title, seller FROM models ORDER BY id DESC").all();
     return context.html(
       page(
         "Models",
-        html`<ul>
+        html`${models.length === 0 ? html`<p>Nothing is for sale yet.</p>` : ""}
+          <ul>
             ${models.map(
               ({ id, title, seller }) =>
                 html`<li>
-                  ${title}, by ${seller}
+                  <h3>${title}</h3>
+                  <p>by ${seller}</p>
                   <form method="post" action="/models/${id}/copies">
                     <label>Your name <input name="buyer" required maxlength="80" /></label><button>Buy and download</button>
                   </form>
@@ -49,10 +55,13 @@ export function shop(db, key) {
             )}
           </ul>
           <h2>Sell a model</h2>
-          <form method="post" action="/models" enctype="multipart/form-data">
+          <form class="form" method="post" action="/models" enctype="multipart/form-data">
             <label>Title <input name="title" required maxlength="80" /></label>
-            <label>Your name <input name="seller" id="seller" required maxlength="80" /></label>
-            <label>Your passphrase; it stays in this page <input type="password" id="passphrase" autocomplete="off" /></label>
+            <label>Your name as the seller <input name="seller" id="seller" required maxlength="80" /></label>
+            <label>
+              Your passphrase <small>It makes your key, with your name, and stays in this page. Without it your mark cannot be found again.</small>
+              <input type="password" id="passphrase" autocomplete="off" required />
+            </label>
             <meshmark-protect name="model" tag="SHOP" required></meshmark-protect>
             <button>Sell</button>
           </form>`,
@@ -63,12 +72,12 @@ export function shop(db, key) {
   app.post("/models", async (context) => {
     const { title, seller, model } = await context.req.parseBody();
     if (!(model instanceof File) || !title || !seller) {
-      return context.text("A model needs a title, a seller and a file.", 400);
+      return context.html(page("Something is missing", html`<p>A model needs a title, a seller and a file.</p>`), 400);
     }
     const bytes = new Uint8Array(await model.arrayBuffer());
     const { tracing } = await traced(db, key, model.name, bytes);
     if (tracing.traced === "named" || tracing.traced === "nobody") {
-      return context.html(page("Refused", html`<p>This is a copy of a model that is sold here. It was not published.</p>`), 409);
+      return context.html(page("Refused", html`<p>This is a copy of a model that is sold here. It was not published. If it is your own model, sell the file that you made it in, not a copy that was bought here.</p>`), 409);
     }
     const { plan } = await call("prepare", bytes, key, { strength: "balanced" });
     db.prepare("INSERT INTO models (title, seller, plan) VALUES (?, ?, ?)").run(title, seller, Buffer.from(plan));
@@ -79,7 +88,7 @@ export function shop(db, key) {
     const { buyer } = await context.req.parseBody();
     const model = db.prepare("SELECT id, plan FROM models WHERE id = ?").get(context.req.param("id"));
     if (!model || !buyer) {
-      return context.text("There is no such model, or you gave no name.", 404);
+      return context.html(page("No copy", html`<p>There is no such model, or you gave no name.</p>`), 404);
     }
     // The number is written down before the copy exists: no copy is without a line in the ledger.
     const add = db.prepare("INSERT INTO sales (model, buyer, date) VALUES (?, ?, ?)");
@@ -92,22 +101,36 @@ export function shop(db, key) {
     });
   });
 
-  app.get("/moderation", (context) =>
-    context.html(
+  app.get("/moderation", (context) => {
+    const sales = db.prepare(`SELECT number, buyer, title, date FROM sales JOIN models ON models.id = model ORDER BY number DESC LIMIT ${SHOWN_SALES}`).all();
+    return context.html(
       page(
         "Moderation",
-        html`<form method="post" action="/moderation" enctype="multipart/form-data">
-          <label>A model that was found elsewhere <input type="file" name="suspect" required /></label><button>Whose copy is it?</button>
-        </form>`,
+        html`<form class="form" method="post" action="/moderation" enctype="multipart/form-data">
+            <label>A model that was found elsewhere <small>.glb. The answer is a page that you can print.</small><input type="file" name="suspect" accept=".glb" required /></label>
+            <button>Whose copy is it?</button>
+          </form>
+          <h2>The last sales</h2>
+          <p>The whole ledger, which the answer is read with: <a href="/moderation/ledger.csv">ledger.csv</a></p>
+          <table>
+            <thead><tr><th>Copy</th><th>Buyer</th><th>Model</th><th>Date</th></tr></thead>
+            <tbody>
+              ${sales.map(({ number, buyer, title, date }) => html`<tr><td>${number}</td><td>${buyer}</td><td>${title}</td><td>${date.slice(0, 10)}</td></tr>`)}
+            </tbody>
+          </table>`,
       ),
-    ),
+    );
+  });
+
+  app.get("/moderation/ledger.csv", (context) =>
+    context.body(ledgerOf(db), 200, { "Content-Type": "text/csv; charset=utf-8", "Content-Disposition": "attachment" }),
   );
 
   // The statement is a page of its own, without scripts: to print, to keep, to send.
   app.post("/moderation", async (context) => {
     const { suspect } = await context.req.parseBody();
     if (!(suspect instanceof File)) {
-      return context.text("Choose a file.", 400);
+      return context.html(page("Something is missing", html`<p>Choose a file.</p>`), 400);
     }
     const bytes = new Uint8Array(await suspect.arrayBuffer());
     const { tracing } = await traced(db, key, suspect.name, bytes);
@@ -126,18 +149,27 @@ export function shop(db, key) {
     return file && type ? context.body(readFileSync(file), 200, { "Content-Type": type }) : context.notFound();
   });
 
+  app.notFound((context) => context.html(page("Not found", html`<p>There is nothing here.</p>`), 404));
   app.onError((error, context) => context.html(page("This did not work", html`<p>${error.message}</p>`), error.code ? 422 : 500));
   return app;
+}
+
+/** All sales, as the command line's `trace --ledger` reads them. */
+function ledgerOf(db) {
+  const sales = db.prepare("SELECT number, buyer, date, sha256 FROM sales ORDER BY number").all();
+  const lines = sales.map(({ number, buyer, date, sha256 }) => `${number},"${buyer.replaceAll('"', '""')}",${date},${sha256}\n`);
+  return `number,name,date,sha256\n${lines.join("")}`;
 }
 
 /** Whose copy a file is, among all sales. */
 async function traced(db, key, name, bytes) {
   const sales = db.prepare("SELECT number, buyer FROM sales").all();
+  const stated = (role, name, bytes) => ({ role, name, bytes: bytes.length, sha256: createHash("sha256").update(bytes).digest("hex") });
   const statement = {
     owner: "the shop",
     date: new Date().toISOString(),
-    files: [{ role: "Suspect", name, bytes: bytes.length, sha256: createHash("sha256").update(bytes).digest("hex") }],
-    commands: ["meshmark trace SUSPECT --ledger LEDGER.csv --key-file data/key"],
+    files: [stated("Suspect", name, bytes), stated("Ledger", "ledger.csv", Buffer.from(ledgerOf(db)))],
+    commands: ["meshmark trace SUSPECT --ledger ledger.csv --key-file data/key"],
     names: Object.fromEntries(sales.map(({ number, buyer }) => [number, buyer])),
   };
   const numbers = Float64Array.from(sales, ({ number }) => number);
@@ -146,7 +178,7 @@ async function traced(db, key, name, bytes) {
 
 /** The page's own files, and the package's: nothing else. */
 function asset(name) {
-  const own = ["shop.js", "shop.css"];
+  const own = ["shop.js", "shop.css", "icon.svg"];
   if (own.includes(name)) {
     return fileURLToPath(new URL(`public/${name}`, import.meta.url));
   }
@@ -154,19 +186,31 @@ function asset(name) {
   return path && fileURLToPath(new URL(`../${path}`, import.meta.resolve("meshmark")));
 }
 
+const PAGES = [
+  ["/", "Models"],
+  ["/moderation", "Moderation"],
+];
+
 function page(title, content) {
   return html`<!doctype html>
     <html lang="en">
       <head>
         <meta charset="utf-8" />
-        <title>${title}</title>
+        <meta name="viewport" content="width=device-width" />
+        <title>${title} · A shop with meshmark</title>
+        <link rel="icon" href="/assets/icon.svg" />
         <link rel="stylesheet" href="/assets/shop.css" />
         <script type="module" src="/assets/shop.js"></script>
       </head>
       <body>
-        <nav><a href="/">Models</a> <a href="/moderation">Moderation</a></nav>
-        <h1>${title}</h1>
-        ${content}
+        <header>
+          <strong>A shop with meshmark</strong>
+          ${PAGES.map(([path, name]) => html`<a href="${path}" ${raw(name === title ? 'aria-current="page"' : "")}>${name}</a>`)}
+        </header>
+        <main>
+          <h1>${title}</h1>
+          ${content}
+        </main>
       </body>
     </html>`;
 }

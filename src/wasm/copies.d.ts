@@ -6,6 +6,8 @@ export function stamp(plan: Uint8Array, number: number): Stamped;
 export function trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions): Tracing;
 /** The same of a suspect that is no glTF. */
 export function traceMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, numbers: Float64Array, options?: TraceMeshOptions): Tracing;
+/** The same of evidence: it is whoever wrote it who says what was measured. */
+export function traceEvidence(evidence: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceEvidenceOptions): Tracing;
 /** Reads a model as `detect` does, and gives what was found as an HTML file. */
 export function stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions): string;
 /** The number of the copy that has this payload under the key. */

@@ -1,6 +1,6 @@
 //! Copies for buyers, and tracing: what a page loads when somebody sells.
 
-use super::marks::{embed_options_from, key_from, model_to, surface_from};
+use super::marks::{embed_options_from, evidence_from, key_from, model_to, surface_from};
 use super::options::Options;
 use super::{argument, encoded, set, thrown};
 use crate::watermark::{self, Error};
@@ -90,6 +90,20 @@ pub fn trace_mesh(
     let surface = Surface::new(positions, triangles).with_progress(&mut listener);
     let tracing = watermark::trace(surface, &key, &numbers).map_err(thrown)?;
     told(&tracing, &key, &options)
+}
+
+/// The same of evidence.
+#[wasm_bindgen(js_name = traceEvidence, skip_typescript)]
+pub fn trace_evidence(
+    evidence: &[u8],
+    key: &[u8],
+    numbers: &[f64],
+    options: JsValue,
+) -> Result<JsValue, JsValue> {
+    let options = Options::new(options, &["statement"])?;
+    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let tracing = watermark::trace_evidence(&evidence_from(evidence)?, &key, &numbers);
+    told(&tracing.map_err(thrown)?, &key, &options)
 }
 
 /// Reads a model with the key alone, and states what was found.

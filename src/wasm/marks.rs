@@ -210,7 +210,7 @@ pub(super) fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
     Key::from_bytes(bytes).map_err(Error::from).map_err(thrown)
 }
 
-fn evidence_from(bytes: &[u8]) -> Result<Evidence, JsValue> {
+pub(super) fn evidence_from(bytes: &[u8]) -> Result<Evidence, JsValue> {
     Evidence::from_bytes(bytes)
         .map_err(Error::from)
         .map_err(thrown)

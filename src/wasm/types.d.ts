@@ -297,6 +297,11 @@ export interface StatementOptions {
   names?: Record<string, string> | undefined;
 }
 
+export interface TraceEvidenceOptions {
+  /** Default: no statement. */
+  statement?: StatementOptions | undefined;
+}
+
 export interface TraceMeshOptions extends MeasureMeshOptions {
   /** Default: no statement. */
   statement?: StatementOptions | undefined;

@@ -67,7 +67,7 @@ impl Statement<'_> {
         fact("Commitment to the key", self.commitment);
         for file in self.files {
             fact(&file.role, &file.name);
-            fact("Its size", &format!("{} bytes", file.bytes));
+            fact("Its size", &format!("{} bytes", grouped(file.bytes)));
             fact("Its SHA-256", &file.sha256);
         }
         if let Some(date) = self.date {
@@ -85,15 +85,16 @@ impl Statement<'_> {
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
              <title>{plain_title}</title>\n<style>{STYLE}</style>\n<h1>{title}</h1>\n<p>{meaning}</p>\n\
-             <section class=\"box\"><h2>What this does not prove</h2>\n<ul>\n{limits}</ul></section>\n\
+             {answer}<section class=\"box\"><h2>What this does not prove</h2>\n<ul>\n{limits}</ul></section>\n\
              <h2>Facts</h2>\n<table>\n{facts}</table>\n\
-             <h2>How to repeat it</h2>\n<p>Whoever has the key and the files gets the same answer, on any machine:</p>\n<pre>{}</pre>\n\
-             <h2>When it was so</h2>\n<p>Nothing was sent anywhere, and nothing here proves a date. To show later that this file existed today, hand its \
-             SHA-256 to a timestamping service (RFC 3161) or to a notary; a timestamp of the marked model, taken when it was marked, shows more.</p>\n</html>\n",
+             <section><h2>How to repeat it</h2>\n<p>Whoever has the key and the files gets the same answer, on any machine:</p>\n<pre>{}</pre></section>\n\
+             <section><h2>When it was so</h2>\n<p>Nothing was sent anywhere, and nothing here proves a date. To show later that the suspect or this report existed today, hand its \
+             SHA-256 to a timestamping service (RFC 3161) or to a notary; a timestamp of the marked model, taken when it was marked, shows more.</p></section>\n</html>\n",
             commands.join("\n"),
             plain_title = escaped(title),
             title = text(title),
             meaning = text(&meaning),
+            answer = self.answer(),
         )
     }
 
@@ -117,9 +118,12 @@ impl Statement<'_> {
             },
             Finding::Tracing(tracing, _) => match tracing.traced {
                 Traced::Named => format!(
-                    "Each number below is that of a copy which had a part in the suspect. That anybody of the {} buyers in the ledger would be \
-                     named who had no part in it has a probability of at most what is beside the number; nobody is named above 1 in 10^9.",
-                    tracing.num_buyers
+                    "Each copy below had a part in the suspect. Beside it is an upper bound of the chance that any of the {} in the ledger is \
+                     named so without a part in it; nobody is named where that is above 1 in 10^9.",
+                    match tracing.num_buyers {
+                        1 => "1 buyer".to_owned(),
+                        buyers => format!("{} buyers", grouped(buyers as u64)),
+                    }
                 ),
                 Traced::Nobody => "The suspect was made from a model with a mark of this key. Too little of any one copy is left to say \
                                    whose it was, or it is a copy that the ledger does not have."
@@ -127,6 +131,32 @@ impl Statement<'_> {
                 _ => tracing.reading.reason.clone().unwrap_or_default(),
             },
         }
+    }
+
+    /// Who is named, as a table: what a reader looks for first.
+    fn answer(&self) -> String {
+        let Finding::Tracing(tracing, names) = self.finding else {
+            return String::new();
+        };
+        if tracing.buyers.is_empty() {
+            return String::new();
+        }
+        let mut rows = String::new();
+        for buyer in &tracing.buyers {
+            let name = names.iter().find(|(number, _)| *number == buyer.number);
+            let name = name.map_or("", |(_, name)| name);
+            let _ = writeln!(
+                rows,
+                "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
+                buyer.number,
+                text(name),
+                text(&chance(buyer.ln_p))
+            );
+        }
+        format!(
+            "<table class=\"named\">\n<thead><tr><th>Copy</th><th>Buyer in the ledger</th><th>Chance to be named without a part in it</th></tr></thead>\n\
+             <tbody>\n{rows}</tbody></table>\n"
+        )
     }
 
     fn found(&self, fact: &mut impl FnMut(&str, &str)) {
@@ -138,16 +168,20 @@ impl Statement<'_> {
                 if let Some(number) = reading.number {
                     fact("Number that was read", &number.to_string());
                 }
+                if let Some(piece) = &reading.found_in {
+                    let name = piece.name.as_deref().unwrap_or("without a name");
+                    let (parts, all) = (piece.parts, piece.of_parts);
+                    fact(
+                        "Where it was read",
+                        &format!(
+                            "In a piece of the suspect alone, {name}: {parts} of its {all} parts"
+                        ),
+                    );
+                }
                 reading.input
             }
-            Finding::Tracing(tracing, names) => {
-                for buyer in &tracing.buyers {
-                    let name = names.iter().find(|(number, _)| *number == buyer.number);
-                    let name = name.map_or("", |(_, name)| name);
-                    let value = format!("{name} ({})", chance(buyer.ln_p));
-                    fact(&format!("Copy {}", buyer.number), value.trim_start());
-                }
-                fact("Buyers in the ledger", &tracing.num_buyers.to_string());
+            Finding::Tracing(tracing, _) => {
+                fact("Buyers in the ledger", &grouped(tracing.num_buyers as u64));
                 fact("Ways of reading tested", &tracing.num_ways.to_string());
                 tracing.reading.input
             }
@@ -161,7 +195,11 @@ impl Statement<'_> {
     }
 
     fn limits(&self) -> Vec<&'static str> {
-        let mut limits = Vec::new();
+        let reading = match self.finding {
+            Finding::Reading(reading) => reading,
+            Finding::Tracing(tracing, _) => &tracing.reading,
+        };
+        let mut limits = Vec::from_iter(reading.caution);
         let is_positive = match self.finding {
             Finding::Reading(reading) => {
                 matches!(reading.verdict, Verdict::Found | Verdict::Present)
@@ -197,15 +235,30 @@ impl Statement<'_> {
 fn chance(ln_p: f64) -> String {
     let digits = (-ln_p / LN_10) as u32;
     if digits > MOST_DIGITS {
-        return format!("less than 1 in 10^{MOST_DIGITS}, beyond which nothing is told");
+        return format!(
+            "less than 1 in 10^{MOST_DIGITS} (a 1 with {MOST_DIGITS} zeros), beyond which nothing is told"
+        );
     }
     let words = match digits {
-        0..=5 => "",
-        6..=8 => "less than one in a million, ",
-        9..=11 => "less than one in a billion, ",
-        _ => "less than one in a million millions, ",
+        0..=5 => return format!("at most 1 in {}", grouped(10_u64.pow(digits))),
+        6..=8 => "less than one in a million",
+        9..=11 => "less than one in a billion",
+        _ => "less than one in a million millions",
     };
-    format!("{words}at most 1 in 10^{digits}")
+    format!("{words}: at most 1 in 10^{digits} (a 1 with {digits} zeros)")
+}
+
+/// A number with its digits in threes, which no line is broken between.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            grouped.push('\u{a0}');
+        }
+        grouped.push(digit);
+    }
+    grouped
 }
 
 /// Words as text of HTML: nothing in them is markup, and none turns the direction of what follows.
@@ -233,10 +286,13 @@ fn escaped(words: &str) -> String {
 }
 
 const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:46rem;margin:2rem auto;padding:0 1rem;color:#111;background:#fff}\
-    h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:1.6rem}.box{border:2px solid #111;padding:.2rem 1rem;margin:1.2rem 0}\
-    .box h2{margin-top:.6rem}table{border-collapse:collapse;width:100%}th{text-align:left;width:14rem;vertical-align:top}\
-    th,td{border-bottom:1px solid #ccc;padding:.25rem .5rem .25rem 0;overflow-wrap:anywhere}pre{white-space:pre-wrap;background:#f3f3f3;padding:.8rem}\
-    @media print{body{margin:0;max-width:none}.box,table,pre{break-inside:avoid}}";
+    h1{font-size:1.6rem;line-height:1.25}h2{font-size:1.15rem;margin:1.6rem 0 .6rem}.box{border:2px solid #111;padding:.2rem 1rem;margin:1.2rem 0}\
+    .box h2{margin-top:.6rem}h1,p,li,th,td,pre{overflow-wrap:anywhere}table{border-collapse:collapse;width:100%}\
+    th{text-align:left;vertical-align:top}tr>th:first-child{width:12rem}.named th:first-child{width:5rem}\
+    .named td:nth-child(2){font-weight:600}td{vertical-align:top}\
+    th,td{border-bottom:1px solid #ccc;padding:.25rem .8rem .25rem 0}pre{white-space:pre-wrap;background:#f3f3f3;padding:.8rem}\
+    @page{margin:18mm}@media print{body{font-size:11pt;margin:0;padding:0;max-width:none}pre{border:1px solid #ccc}\
+    .box,section,tr,pre{break-inside:avoid}h1,h2,thead{break-after:avoid}}";
 
 #[cfg(test)]
 mod tests {
@@ -258,16 +314,17 @@ mod tests {
     fn chances_are_never_smaller_than_the_bound() {
         assert_eq!(
             chance(-20.8),
-            "less than one in a billion, at most 1 in 10^9"
+            "less than one in a billion: at most 1 in 10^9 (a 1 with 9 zeros)"
         );
         assert_eq!(
             chance(-14.0),
-            "less than one in a million, at most 1 in 10^6"
+            "less than one in a million: at most 1 in 10^6 (a 1 with 6 zeros)"
         );
         assert_eq!(
             chance(-3489.0),
-            "less than 1 in 10^38, beyond which nothing is told"
+            "less than 1 in 10^38 (a 1 with 38 zeros), beyond which nothing is told"
         );
-        assert_eq!(chance(0.0), "at most 1 in 10^0");
+        assert_eq!(chance(0.0), "at most 1 in 1");
+        assert_eq!(chance(-11.6), "at most 1 in 100\u{a0}000");
     }
 }

@@ -70,6 +70,7 @@ test("copies and tracings have the declared shapes, and their calls the declared
     EmbedOptions: (options) => facade.prepare(model, key, options),
     TraceOptions: (options) => facade.trace(model, key, numbers, options),
     TraceMeshOptions: (options) => facade.traceMesh(new Float64Array(9), new Uint32Array(3), key, numbers, options),
+    TraceEvidenceOptions: (options) => facade.traceEvidence(facade.measure(model), key, numbers, options),
     StateReadingOptions: (options) => facade.stateReading(model, key, options),
   };
   for (const [type, call] of Object.entries(calls)) {

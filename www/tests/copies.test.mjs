@@ -46,6 +46,10 @@ test("copies are stamped from a plan, read and traced", { timeout: SLOW }, () =>
   assert.match(tracing.statement, /Grace &amp; Co/);
   assert.match(tracing.statement, /&lt;b&gt;Ada/);
   assert.equal(meshmark.trace(model, KEY, ledger).traced, "no-mark");
+  const measured = meshmark.traceEvidence(meshmark.measure(copy.model), KEY, ledger, { statement });
+  assert.deepEqual(measured.buyers.map(({ number }) => number), [7]);
+  assert.equal(measured.reading.input, "evidence");
+  assert.match(measured.statement, /Evidence that somebody measured/);
   assert.match(meshmark.stateReading(copy.model, KEY, { statement }), /Your mark was found\./);
 });
 

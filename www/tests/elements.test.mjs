@@ -13,8 +13,12 @@ const FORM = `<!doctype html><title>shop</title><script type="module" src="/page
 <form method="post" action="/upload" enctype="multipart/form-data">
 <meshmark-protect name="model" tag="ADA-1" required></meshmark-protect>
 <meshmark-check name="verdict"></meshmark-check><button>Send</button></form>`;
-const PAGE = `import "/dist/elements.js";
-for (const element of document.querySelectorAll("meshmark-protect, meshmark-check")) element.key = () => new Uint8Array(32).fill(9);
+// What is set before the elements are defined counts too, as where a framework renders first.
+const PAGE = `for (const element of document.querySelectorAll("meshmark-protect, meshmark-check")) {
+  element.ownerKey = () => new Uint8Array(32).fill(9);
+  element.strings = { working: "One moment…" };
+}
+await import("/dist/elements.js");
 globalThis.heard = [];
 for (const name of ["meshmark-protected", "meshmark-verdict", "meshmark-error"]) document.addEventListener(name, (event) => heard.push([name, event.detail]));`;
 
@@ -77,8 +81,11 @@ test("a model is marked before the form sends it", { timeout: 240_000 }, async (
   assert.equal(await protect.evaluate((element) => element.validity.valueMissing), true);
   await page.getByLabel("Model to protect").setInputFiles(file("rock.glb", meshmark.demoModel()));
   assert.equal(await protect.evaluate((element) => element.checkValidity()), false, "not while it works");
+  assert.equal(await protect.getByRole("status").textContent(), "One moment…");
+  await protect.getByRole("progressbar").waitFor();
   await heard(page, "meshmark-protected");
   assert.match(await protect.getByRole("status").textContent(), /^Protected\./);
+  assert.equal(await protect.getByRole("progressbar").count(), 0);
   const [, detail] = await page.evaluate(() => heard.find(([name]) => name === "meshmark-protected"));
   assert.equal(detail.report.tag, "ADA-1");
   await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.embed(meshmark.demoModel(), "ADA-2", KEY).model));
@@ -96,19 +103,54 @@ test("a model is marked before the form sends it", { timeout: 240_000 }, async (
 test("what cannot be marked is said, and not sent", { timeout: 120_000 }, async () => {
   await page.goto(origin);
   const protect = page.locator("meshmark-protect");
-  await protect.evaluate((element) => (element.strings = { failed: "Pas protégé : {message}" }));
-  await page.getByLabel("Model to protect").setInputFiles(file("not.glb", "<script>alert(1)</script>"));
+  await protect.evaluate((element) => (element.strings = { failed: "Pas protégé : {message}", choose: () => "Modèle à protéger" }));
+  const field = page.getByLabel("Modèle à protéger");
+  await field.setInputFiles(file("not.glb", "<script>alert(1)</script>"));
   await heard(page, "meshmark-error");
   assert.match(await protect.getByRole("status").textContent(), /^Pas protégé : ./);
+  assert.deepEqual(await field.evaluate((input) => [input.ariaInvalid, input.required, input.getRootNode().getElementById(input.getAttribute("aria-describedby")).role]), ["true", true, "status"]);
   assert.equal(await protect.evaluate((element) => element.checkValidity()), false);
   assert.equal(await protect.evaluate((element) => new FormData(element.form).get("model")), null);
   await protect.evaluate((element) => element.form.reset());
   assert.equal(await protect.getByRole("status").textContent(), "");
-  await protect.evaluate((element) => (element.key = undefined));
-  await page.getByLabel("Model to protect").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await protect.evaluate((element) => (element.ownerKey = undefined));
+  await field.setInputFiles(file("rock.glb", meshmark.demoModel()));
   await page.waitForFunction(() => heard.filter(([name]) => name === "meshmark-error").length === 2);
   assert.match(await protect.getByRole("status").textContent(), /No key was given/);
+  await protect.evaluate((element) => ((element.ownerKey = new Uint8Array(32).fill(9)), void element.again()));
+  await heard(page, "meshmark-protected");
+  await protect.evaluate((element) => element.toggleAttribute("disabled"));
+  assert.equal(await field.isDisabled(), true);
+  assert.equal(await protect.evaluate((element) => new FormData(element.form).get("model")), null, "what is disabled sends nothing");
   assert.deepEqual(offences, []);
+});
+
+test("a server can import them to render a page", async () => {
+  const { MeshmarkProtect } = await import("meshmark/elements");
+  assert.equal(typeof MeshmarkProtect, "function");
+});
+
+test("the keyboard reaches them, and stops at what is missing", { timeout: 60_000 }, async () => {
+  await page.goto(origin);
+  await page.waitForFunction(() => globalThis.heard);
+  const focused = () => page.evaluate(() => [document.activeElement.localName, document.activeElement.shadowRoot?.activeElement?.type]);
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await focused(), ["meshmark-protect", "file"]);
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await focused(), ["meshmark-check", "file"]);
+  await page.getByRole("button", { name: "Send" }).press("Enter");
+  assert.deepEqual(await focused(), ["meshmark-protect", "file"], "the browser leads to the field that is missing");
+});
+
+test("what was not found is not shown as good news", { timeout: 120_000 }, async () => {
+  await page.goto(origin);
+  await page.waitForFunction(() => globalThis.heard);
+  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await heard(page, "meshmark-verdict");
+  const status = page.locator("meshmark-check").getByRole("status");
+  assert.match(await status.textContent(), /^No evidence of this key\./);
+  const colours = await status.evaluate((status) => [getComputedStyle(status).color, getComputedStyle(status.getRootNode().host).color]);
+  assert.equal(colours[0], colours[1]);
 });
 
 test("they work in a frame", { timeout: 240_000 }, async () => {

@@ -14,7 +14,7 @@ import { BufferGeometry, Float32BufferAttribute, Mesh } from "three";
 import { OBJExporter } from "three/addons/exporters/OBJExporter.js";
 import { PLYExporter } from "three/addons/exporters/PLYExporter.js";
 import { STLExporter } from "three/addons/exporters/STLExporter.js";
-import { check, comeToLook, drop, dropped, facts, folder, headline, mark, onDisk, onPage, page, picture, result, saved, unseen } from "./page.mjs";
+import { button, check, comeToLook, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, result, saved, unseen, view } from "./page.mjs";
 import { OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).setLogger(new Logger(Verbosity.ERROR));
@@ -79,6 +79,28 @@ unseen("a folder with a model compressed by meshopt is marked, and had as an arc
   await facts().getByText("scene.marked.gltf").waitFor();
   await check();
   assert.equal(await headline(), "Your mark was found");
+});
+
+unseen("a model in several files has a folder for each buyer's copy", async () => {
+  const { root, files } = await asFolder("copies", await io.readBinary(small));
+  await drop(root);
+  await facts().getByText("scene.gltf").waitFor();
+  await view().getByText("One copy for each buyer").click();
+  await page.getByLabel("Names of the buyers").fill("Grace\nLin");
+  await fillKey();
+  await button("Make the copies").click();
+  await view().getByText("2 copies, each read back with its number").waitFor();
+  const made = unzipSync(readFileSync(await saved("Download all (.zip)")));
+  const each = ["pictures/wood a.png", "scene.bin", "scene.gltf"];
+  assert.deepEqual(Object.keys(made).sort(), [...each.map((name) => `1/${name}`), ...each.map((name) => `2/${name}`), "ledger.csv", "ledger.json"]);
+  assert.deepEqual(Buffer.from(made["1/pictures/wood a.png"]), files["pictures/wood a.png"]);
+  assert.notDeepEqual(made["1/scene.bin"], made["2/scene.bin"]);
+  assert.match(Buffer.from(made["ledger.csv"]).toString(), /\n2,Lin,2\/scene\.gltf,/);
+  await page.getByRole("tab", { name: "Check" }).click();
+  await drop(onDisk("leaked.zip", zipSync(Object.fromEntries(each.map((name) => [name, made[`2/${name}`]])))));
+  await page.getByLabel("Ledger of buyers").setInputFiles(onDisk("buyers.csv", made["ledger.csv"]));
+  await check();
+  assert.deepEqual(await result().locator("li strong").allTextContents(), ["Lin"]);
 });
 
 unseen("an archive is as good as what is in it", async () => {

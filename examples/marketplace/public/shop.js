@@ -4,13 +4,24 @@ import "/assets/meshmark/dist/elements.js";
 
 const protect = document.querySelector("meshmark-protect");
 if (protect) {
-  protect.key = async () => {
-    const [seller, passphrase] = ["seller", "passphrase"].map((id) => document.getElementById(id).value);
+  const fields = ["seller", "passphrase"].map((id) => document.getElementById(id));
+  const words = () => fields.map((field) => field.value);
+  let used = words();
+  protect.ownerKey = async () => {
+    used = words();
     const client = await createClient();
     try {
-      return await client.deriveKey(seller, passphrase);
+      return await client.deriveKey(...used);
     } finally {
       client.dispose();
     }
   };
+  // Another name or passphrase is another key.
+  for (const field of fields) {
+    field.addEventListener("change", () => {
+      if (words().some((word, i) => word !== used[i])) {
+        protect.again();
+      }
+    });
+  }
 }

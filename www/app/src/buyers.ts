@@ -1,11 +1,12 @@
 /** One copy for each buyer: names in, an archive of copies and their ledger out. */
 import { csvFormat } from "d3-dsv";
+import { filesOf, isAlone, type Preset } from "./copy";
 import { engine } from "./engine";
 import type { KeyMaker } from "./key-form";
-import { renamed, type Model } from "./model";
+import { copyName, type Model } from "./model";
 import { withKey } from "./reading";
 import type { Task } from "./task";
-import type { Preset } from "./copy";
+
 
 /** A line of the ledger, as the command line writes it. */
 interface Entry {
@@ -40,11 +41,16 @@ export async function copiesFor(model: Model, names: string[], first: number, st
   const files: Record<string, Uint8Array> = {};
   let numWeaker = 0;
   await withKey(client, makeKey, task, async (key) => {
-    for await (const { model: copy, report } of client.copies(model.bytes, numbers, key, { strength, signal: task.signal, onProgress: task.onProgress })) {
+    const options = { files: model.buffers, strength, signal: task.signal, onProgress: task.onProgress };
+    for await (const { model: bytes, files: changed, report } of client.copies(model.bytes, numbers, key, options)) {
       const name = names[report.number - first]!;
-      const extension = model.name.slice(model.name.lastIndexOf(".") + 1);
-      const file = renamed(model.name, `${report.number}.${extension}`);
-      files[file] = copy;
+      const copy: Model = { ...model, bytes: bytes as Model["bytes"], buffers: { ...model.buffers, ...changed } };
+      // A model of several files names them: each copy has a folder of its own, and its files their names.
+      const [folder, main] = isAlone(copy) ? ["", copyName(model, String(report.number))] : [`${report.number}/`, model.name];
+      for (const [path, content] of Object.entries(filesOf({ ...copy, name: main }))) {
+        files[folder + path] = content;
+      }
+      const file = folder + main;
       numWeaker += Number(report.isWeaker);
       entries.push({ number: report.number, name, file, sha256: report.markedSha256, date: new Date().toISOString() });
       task.say(`Copy ${entries.length} of ${names.length}: ${name}`, entries.length / names.length);

@@ -2,7 +2,7 @@
 import type { Carrier, DetailedExtraction, EmbedOptions, Embedding, Inspection } from "meshmark";
 import { copiesFor, namesIn, type Copies } from "./buyers";
 import { button, find, setProblem } from "./dom";
-import { copyOf, isAlone, type Asked, type Copy, type Preset } from "./copy";
+import { copyOf, type Asked, type Copy, type Preset } from "./copy";
 import { engine } from "./engine";
 import { incompleteKeyField, isKeyComplete, keySource, strangerKey, type KeyMaker, type KeySource } from "./key-form";
 import { renamed, type Found, type Model } from "./model";
@@ -262,9 +262,7 @@ export class Protect extends View<Stage> {
         ? "Give the names of the buyers."
         : !isNumber
           ? "The number of the first is a whole number from 1 on."
-          : this.model && !isAlone(this.model)
-            ? "Copies for buyers are made of models in one file: save it as .glb first, or use the command line."
-            : null;
+          : null;
     find("#buyers-error").textContent = problem ?? "";
     field.toggleAttribute("aria-invalid", problem !== null);
     const model = this.ready(incompleteKeyField() ?? (problem ? field : null));

@@ -21,6 +21,7 @@ import type {
   ReadOptions,
   Stamped,
   StateReadingOptions,
+  TraceEvidenceOptions,
   TraceMeshOptions,
   TraceOptions,
   Tracing,
@@ -90,6 +91,7 @@ export interface Client {
     numbers: Float64Array,
     options?: TraceMeshOptions & CallOptions,
   ): Promise<Tracing>;
+  traceEvidence(evidence: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceEvidenceOptions & CallOptions): Promise<Tracing>;
   stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions & CallOptions): Promise<string>;
   copyNumber(payload: number, key: Uint8Array, options?: CallOptions): Promise<number>;
   /** Ends the worker; calls under way, and later ones, reject with code `disposed`. */
@@ -131,6 +133,7 @@ export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl,
     copies: (model, numbers, key, options) => copies(remote, start, model, numbers, key, options),
     trace: (model, key, numbers, options) => remote.call("trace", [model, key, numbers], options),
     traceMesh: (positions, triangles, key, numbers, options) => remote.call("traceMesh", [positions, triangles, key, numbers], options),
+    traceEvidence: (evidence, key, numbers, options) => remote.call("traceEvidence", [evidence, key, numbers], options),
     stateReading: (model, key, options) => remote.call("stateReading", [model, key], options),
     copyNumber: (payload, key, options) => remote.call("copyNumber", [payload, key], options),
     dispose: () => remote.dispose(),

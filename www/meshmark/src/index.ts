@@ -11,6 +11,7 @@ import type {
   Prepared,
   Stamped,
   StateReadingOptions,
+  TraceEvidenceOptions,
   TraceMeshOptions,
   TraceOptions,
   Tracing,
@@ -49,6 +50,7 @@ export type {
   StatementOptions,
   StateReadingOptions,
   Strength,
+  TraceEvidenceOptions,
   TraceMeshOptions,
   TraceOptions,
   Tracing,
@@ -119,6 +121,7 @@ interface Copies {
   stamp(plan: Uint8Array, number: number): Stamped;
   trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions): Tracing;
   traceMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, numbers: Float64Array, options?: TraceMeshOptions): Tracing;
+  traceEvidence(evidence: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceEvidenceOptions): Tracing;
   stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions): string;
   copyNumber(payload: number, key: Uint8Array): number;
 }
@@ -128,7 +131,7 @@ let copies: (Module & Copies) | undefined;
 
 /**
  * Loads the module that makes copies for buyers and traces them, in the place of the others: it reads compressed geometry too. Until then
- * `prepare`, `stamp`, `trace`, `traceMesh`, `stateReading` and `copyNumber` throw `init.missing`. The client calls it when it is needed.
+ * `prepare`, `stamp`, `trace`, `traceMesh`, `traceEvidence`, `stateReading` and `copyNumber` throw `init.missing`. The client calls it when it is needed.
  *
  * @param input as for `init`
  * @throws MeshmarkError `init.failed`
@@ -207,5 +210,6 @@ export const prepare = guardedCopies("prepare");
 export const stamp = guardedCopies("stamp");
 export const trace = guardedCopies("trace");
 export const traceMesh = guardedCopies("traceMesh");
+export const traceEvidence = guardedCopies("traceEvidence");
 export const stateReading = guardedCopies("stateReading");
 export const copyNumber = guardedCopies("copyNumber");

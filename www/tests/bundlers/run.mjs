@@ -1,55 +1,24 @@
 // The packed package in projects of others: each bundler builds a page, and the page marks and finds in Chromium. What the package's
 // README says of bundlers is tried here. They have a lock file of their own: `npm ci` in www/ installs none of them.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { copyFileSync, readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { launch, serve } from "../browser.mjs";
+import { buildNext, clean, install, path, run } from "./support.mjs";
 
 const FOUND = "found BUNDLED";
 /** A build on a busy machine, and a page that marks and finds. */
 const SLOW = 120_000;
 
-const path = (name) => fileURLToPath(new URL(name, import.meta.url));
 let browser;
 
-function run(command, args, options = {}) {
-  return execFileSync(command, args, { cwd: path("."), encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], ...options });
-}
-
 before(async () => {
-  installBundlers();
-  installPackage();
+  install();
   browser = await launch();
 });
 
 after(() => browser?.close());
-
-/** What the lock file says, unless that is what is there. */
-function installBundlers() {
-  const [lock, installed] = [path("package-lock.json"), path("node_modules/.installed.json")];
-  if (!existsSync(installed) || readFileSync(installed, "utf8") !== readFileSync(lock, "utf8")) {
-    run("npm", ["ci", "--no-audit", "--no-fund"]);
-    copyFileSync(lock, installed);
-  }
-}
-
-/** What `npm publish` would publish, installed beside the bundlers, where every project finds it. */
-function installPackage() {
-  const packed = mkdtempSync(join(tmpdir(), "meshmark-packed-"));
-  const [{ filename }] = JSON.parse(run("npm", ["pack", "--json", "--silent", "--pack-destination", packed], { cwd: path("../../meshmark") }).replace(/^[^[]*/, ""));
-  run("npm", ["install", "--no-save", "--offline", "--no-audit", "--no-fund", join(packed, filename)]);
-  rmSync(packed, { recursive: true });
-}
-
-/** Removes what an earlier run left. */
-function clean(folder) {
-  rmSync(path(folder), { recursive: true, force: true });
-}
 
 /** What the page at an address comes to. */
 async function resultOf(origin) {
@@ -116,9 +85,7 @@ test("esbuild, as the README shows it", async () => {
 
 for (const [name, option] of [["Next", "--turbopack"], ["Next, by webpack", "--webpack"]]) {
   test(name, async () => {
-    clean("next/.next");
-    clean("next/out");
-    run(process.execPath, [path("node_modules/next/dist/bin/next"), "build", path("next"), option], { env: { ...process.env, NEXT_TELEMETRY_DISABLED: "1" } });
+    buildNext("next", option);
     assert.equal(await resultOfFolder("next/out"), FOUND);
   });
 }

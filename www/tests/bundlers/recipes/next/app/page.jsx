@@ -1,0 +1,12 @@
+"use client";
+import "meshmark/elements";
+import { keyOfThisUser } from "../../key.js";
+
+export default function Upload() {
+  return (
+    <form method="post" action="/upload" encType="multipart/form-data">
+      <meshmark-protect name="model" tag="ADA-1" required ref={(element) => void (element && (element.ownerKey = keyOfThisUser))} />
+      <button>Upload</button>
+    </form>
+  );
+}

@@ -2,12 +2,12 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{load, load_text, open, open_suspect};
+use crate::file::{Found, load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, compare, compare_with_record,
-    detect, extract, measure, trace, trace_evidence, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, detect, extract, measure,
+    trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -44,28 +44,9 @@ impl Suspect {
         })
     }
 
-    /// Reads a model with its original at hand.
-    pub fn compare(
-        &self,
-        original: &Path,
-        key: &Key,
-        clock: &mut Clock,
-    ) -> Result<Comparison, Failure> {
-        let original = open(original)?;
-        let suspect = open_suspect(&self.input)?;
-        Ok(compare(suspect.suspect(clock), original.unwatched(), key)?)
-    }
-
-    /// Reads a model with the record of marking it.
-    pub fn compare_with_record(
-        &self,
-        record: &Path,
-        key: &Key,
-        clock: &mut Clock,
-    ) -> Result<Comparison, Failure> {
-        let record = load_text(record)?;
-        let suspect = open_suspect(&self.input)?;
-        Ok(compare_with_record(suspect.suspect(clock), &record, key)?)
+    /// The model, as it was found on disk.
+    pub fn found(&self) -> Result<Found, Failure> {
+        open_suspect(&self.input)
     }
 
     /// Says whose copies a model, or what was measured of one, was made of.

@@ -31,16 +31,13 @@ impl Extract {
         let key = self.owner.key()?;
         let repeated = format!("meshmark extract {}", self.suspect.arguments());
         let suspect = ("Suspect", self.suspect.path());
-        if let Some((role, option, path)) = self.informed.given()
-            && let Some((comparison, overlay)) =
-                self.informed.compare(&self.suspect, &key, &mut clock)?
-        {
-            let repeated = format!("{repeated} {option} {}", path.display());
-            let finding = Finding::Comparison(&comparison, overlay.as_ref());
-            let looked_at = [suspect, (role, path)];
+        if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
+            let finding = Finding::Comparison(&compared.comparison, compared.overlay.as_ref());
+            let looked_at = [suspect, (compared.role, compared.path)];
+            let repeated = format!("{repeated} {}", compared.argument);
             self.statement
                 .write(finding, &looked_at, &key, &self.owner, &repeated)?;
-            return self.telling.of_comparison(comparison, clock);
+            return self.telling.of_comparison(compared.comparison, None, clock);
         }
         let extraction = self.suspect.examine(&key, None, &mut clock)?;
         let finding = Finding::Reading(&extraction);

@@ -20,37 +20,51 @@ pub struct Informed {
     record: Option<PathBuf>,
 }
 
-impl Informed {
-    /// What there is: its part in the reading, its option, and the file.
-    pub fn given(&self) -> Option<(&'static str, &'static str, &Path)> {
-        match (&self.original, &self.record) {
-            (Some(path), _) => Some(("Original", "--original", path)),
-            (_, Some(path)) => Some(("Record", "--record", path)),
-            _ => None,
-        }
-    }
+/// A comparison, and what it was made with.
+pub struct Compared<'a> {
+    pub comparison: Comparison,
+    pub overlay: Option<Overlay>,
+    /// What the file is to a reader.
+    pub role: &'static str,
+    pub path: &'a Path,
+    /// What somebody has to say on the command line for the same.
+    pub argument: String,
+}
 
-    /// Reads a suspect with what there is; `None` where there is neither.
+impl Informed {
+    /// Reads a suspect with what there is; `None` where there is nothing.
     pub fn compare(
         &self,
         suspect: &Suspect,
         key: &Key,
         clock: &mut Clock,
-    ) -> Result<Option<(Comparison, Option<Overlay>)>, Failure> {
-        Ok(match (&self.original, &self.record) {
-            (Some(path), _) => {
-                let original = open(path)?;
-                let found = suspect.found()?;
-                let original = original.unwatched();
-                Some(compare_overlaid(found.suspect(clock), original, key)?)
-            }
-            (_, Some(path)) => {
-                let record = load_text(path)?;
-                let found = suspect.found()?;
-                let suspect = found.suspect(clock);
-                Some(compare_overlaid_with_record(suspect, &record, key)?)
-            }
-            _ => None,
-        })
+    ) -> Result<Option<Compared<'_>>, Failure> {
+        if let Some(path) = &self.original {
+            let original = open(path)?;
+            let found = suspect.found()?;
+            let (comparison, overlay) =
+                compare_overlaid(found.suspect(clock), original.unwatched(), key)?;
+            return Ok(Some(Compared {
+                comparison,
+                overlay,
+                role: "Original",
+                path,
+                argument: format!("--original {}", path.display()),
+            }));
+        }
+        let Some(path) = &self.record else {
+            return Ok(None);
+        };
+        let record = load_text(path)?;
+        let found = suspect.found()?;
+        let (comparison, overlay) =
+            compare_overlaid_with_record(found.suspect(clock), &record, key)?;
+        Ok(Some(Compared {
+            comparison,
+            overlay,
+            role: "Record",
+            path,
+            argument: format!("--record {}", path.display()),
+        }))
     }
 }

@@ -507,6 +507,10 @@ fn cli_reads_with_the_original_and_with_the_record() {
         assert_eq!(answer["tag"], "ADA-1", "{with}");
         assert_eq!(answer["shape"], "same", "{with}");
         assert_eq!(answer["witness"], "surface", "{with}");
+        let verify = |tag: &str| format!("verify copy.glb {with} --tag {tag} {ADA}");
+        assert_eq!(folder.run(&verify("ADA-1")).0, 0, "{with}");
+        let (code, answer, _) = folder.run(&verify("ADA-2"));
+        assert_eq!((code, &answer["tag"]), (1, &json!("ADA-1")), "{with}");
     }
     for (with, role) in [
         ("--original model.glb", "Original"),

@@ -56,14 +56,14 @@ fn turned_to(from: DVec3) -> DMat3 {
     DMat3::from_cols(right, from.cross(right), from).transpose()
 }
 
-/// Triangles with a colour at each vertex; those with a corner without one are not drawn.
+/// Triangles with a colour at each vertex.
 pub struct Painted<'a> {
     /// Of the vertices.
     pub positions: &'a [[f32; 3]],
     /// By index.
     pub triangles: &'a [[u32; 3]],
     /// Of a vertex.
-    pub colour: &'a dyn Fn(usize) -> Option<Colour>,
+    pub colour: &'a dyn Fn(usize) -> Colour,
     /// How much nearer they are drawn than they are, in radii: what lies on another surface shall be seen whole.
     pub lifted: f64,
 }
@@ -100,9 +100,7 @@ impl Picture {
         for triangle in painted.triangles {
             let corners = triangle.map(|v| corners[v as usize]);
             let colours = triangle.map(|v| (painted.colour)(v as usize));
-            if let [Some(a), Some(b), Some(c)] = colours {
-                self.fill(panel * width, width, &corners, [a, b, c]);
-            }
+            self.fill(panel * width, width, &corners, colours);
         }
     }
 

@@ -42,27 +42,34 @@ fn picture(overlay: &Overlay) -> Vec<u8> {
     let from = DVec3::from_array(overlay.from);
     let view = View::of(&overlay.original.positions, from);
     let mut picture = Picture::new(PANELS * PANEL, PANEL);
-    let mut paint = |panel, sheet: &Sheet, lifted, colour: &dyn Fn(usize) -> Option<Colour>| {
-        let painted = Painted {
-            positions: &sheet.positions,
-            triangles: &sheet.triangles,
-            colour,
-            lifted,
+    let mut paint =
+        |panel, sheet: &Sheet, triangles: &[[u32; 3]], lifted, colour: &dyn Fn(usize) -> Colour| {
+            let painted = Painted {
+                positions: &sheet.positions,
+                triangles,
+                colour,
+                lifted,
+            };
+            picture.draw((panel, PANELS), &view, &painted);
         };
-        picture.draw((panel, PANELS), &view, &painted);
-    };
-    paint(0, &overlay.original, 0.0, &|_| Some(ORIGINAL));
-    paint(1, &overlay.original, 0.0, &|_| Some(PALE));
-    paint(1, &overlay.suspect, LIFTED, &|_| Some(SUSPECT));
-    paint(2, &overlay.original, 0.0, &|v| {
-        let difference = overlay.differences[v];
-        Some(match difference.is_finite() {
-            true => viridis(difference / overlay.most_difference),
-            false => CUT,
-        })
-    });
-    paint(2, &overlay.suspect, 0.0, &|v| {
-        overlay.additions[v].is_infinite().then_some(ADDED)
+    let Overlay {
+        original, suspect, ..
+    } = overlay;
+    paint(0, original, &original.triangles, 0.0, &|_| ORIGINAL);
+    paint(1, original, &original.triangles, 0.0, &|_| PALE);
+    paint(1, suspect, &suspect.triangles, LIFTED, &|_| SUSPECT);
+    let (near, cut) = parted(original, &overlay.differences);
+    let (_, added) = parted(suspect, &overlay.additions);
+    paint(2, original, &cut, 0.0, &|_| CUT);
+    paint(2, suspect, &added, 0.0, &|_| ADDED);
+    paint(2, original, &near, 0.0, &|v| {
+        viridis(overlay.differences[v] / overlay.most_difference)
     });
     picture.png()
+}
+
+/// The triangles whose corners all have a finite value, and the others.
+fn parted(sheet: &Sheet, values: &[f32]) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
+    let is_near = |corners: &[u32; 3]| corners.iter().all(|v| values[*v as usize].is_finite());
+    sheet.triangles.iter().copied().partition(is_near)
 }

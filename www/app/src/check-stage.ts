@@ -92,8 +92,8 @@ export class CheckStage extends Stage {
       const end = this.#ends[seen];
       const [title, marks] =
         seen === "difference"
-          ? [`How far the suspect is from the original, in % of the original’s diagonal.${this.#isRough ? " A record keeps few triangles: what differs a little is the record." : ""}`, [0, end / 2, end].map((of) => `${short(of * 100)} %`)]
-          : ["How much each place says for your mark: by how many times it makes chance less likely.", [0, end / 2, end].map((of) => `${short(Math.exp(of))} ×`)];
+          ? [`How far apart they are, in % of the original’s diagonal.${this.#isRough ? " A record keeps few triangles: what differs a little is the record." : ""}`, [0, end / 2, end].map((of) => `${short(of * 100)} %`)]
+          : ["What each place says for your mark: it makes chance so many times less likely.", [0, end / 2, end].map((of) => `${short(Math.exp(of))} ×`)];
       find("p", this.#legend).textContent = title;
       find(".scale", this.#legend).replaceChildren(...marks.map((mark, i) => h("span", {}, i === 2 ? `${mark} or more` : mark)));
     }

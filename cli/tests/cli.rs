@@ -529,6 +529,8 @@ fn cli_reads_with_the_original_and_with_the_record() {
         ] {
             assert!(report.contains(words), "{with}: {words}");
         }
+        let is_recorded = report.contains("what the record keeps of it");
+        assert_eq!(is_recorded, role == "Record");
     }
     let (code, answer, _) = folder.run(&format!("extract model.glb --original model.glb {ADA}"));
     assert_eq!((code, &answer["shape"]), (1, &json!("same")), "{answer}");

@@ -117,7 +117,9 @@ export interface Sheet {
 
 /** A suspect laid on its original. */
 export interface Overlay {
-  /** The original; of a record, what it keeps of it: at most some 1200 triangles. */
+  /** Whether the original is what a record keeps of it: some 1200 triangles, from which a copy differs a little everywhere. */
+  isRecorded: boolean;
+  /** The original, or what a record keeps of it. */
   original: Sheet;
   /** The suspect, moved to where it lies on the original. */
   suspect: Sheet;

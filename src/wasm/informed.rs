@@ -175,6 +175,7 @@ fn laid(overlay: &Overlay) -> Result<Object, JsValue> {
     let evidence = overlay.evidence.as_deref().map_or(JsValue::NULL, floats);
     let object = Object::new();
     for (name, value) in [
+        ("isRecorded", overlay.is_recorded.into()),
         ("original", sheet(&overlay.original)?.into()),
         ("suspect", sheet(&overlay.suspect)?.into()),
         ("differences", floats(&overlay.differences)),

@@ -26,13 +26,19 @@ pub(super) const STYLE: &str = "figure{margin:1.2rem 0}img{width:100%;display:bl
 /// The picture as HTML, with a caption.
 pub(super) fn figure(overlay: &Overlay) -> String {
     let end = 100.0 * overlay.most_difference;
+    let recorded = match overlay.is_recorded {
+        true => {
+            " The original is what the record keeps of it, in few triangles: what differs a little is the record."
+        }
+        false => "",
+    };
     format!(
         "<figure><img alt=\"Three pictures from the same side: the original, the suspect where it lies on the original, and how far they are from \
          each other\" src=\"data:image/png;base64,{}\">\n\
          <figcaption><div class=\"thirds\"><span>The original</span><span>The suspect, laid on it</span><span>How far apart they are</span></div>\n\
          <p>In the middle the original is pale. On the right, as a share of the original\u{2019}s diagonal: \
          <span class=\"scale\"></span> 0 to {end:.3} % or more; <span class=\"key cut\"></span> not in the suspect; \
-         <span class=\"key added\"></span> not in the original.</p></figcaption></figure>\n",
+         <span class=\"key added\"></span> not in the original.{recorded}</p></figcaption></figure>\n",
         STANDARD.encode(picture(overlay)),
     )
 }

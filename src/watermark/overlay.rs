@@ -20,6 +20,8 @@ const TURNS: u32 = 8;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Overlay {
+    /// Whether the original is what a record keeps of it: some 1200 triangles, from which a copy differs a little everywhere.
+    pub is_recorded: bool,
     /// The original, in its scene units: what a record keeps of it, where the comparison had no more.
     pub original: Sheet,
     /// The suspect, moved to where it lies on the original, turned over where it is a mirror image.
@@ -78,6 +80,7 @@ impl Overlay {
         let differences = distances(original, &moved, diagonal);
         let evidence = spoken.map(|spoken| evidence(original, &differences, spoken));
         Overlay {
+            is_recorded: false,
             additions: distances(&moved, original, diagonal),
             most_difference: round(end_of(&differences).max(LEAST_SCALE)),
             most_evidence: evidence.as_deref().map_or(0.0, end_of),

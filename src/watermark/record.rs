@@ -179,7 +179,12 @@ pub fn compare_overlaid_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    Ok(compare_in(suspect.into(), record, key)?.overlaid())
+    let (comparison, overlay) = compare_in(suspect.into(), record, key)?.overlaid();
+    let recorded = overlay.map(|overlay| Overlay {
+        is_recorded: true,
+        ..overlay
+    });
+    Ok((comparison, recorded))
 }
 
 fn compare_in(mut suspect: Suspect, record: &str, key: &Key) -> Result<Compared, Error> {

@@ -1,8 +1,6 @@
 /** Check's left side: the suspect, and where it was compared, the suspect laid on its original. */
-import type { Inspection } from "meshmark";
 import type { Overlay } from "meshmark/informed";
 import { find, h, instantiate } from "./dom";
-import type { Model } from "./model";
 import type { StageEvents } from "./showing";
 import { Stage } from "./stage";
 import { drawLegend } from "./viewer/colormap";
@@ -17,7 +15,7 @@ export class CheckStage extends Stage {
   readonly #slider: HTMLInputElement;
   readonly #line = h("div", { class: "wipe-line", hidden: "", "aria-hidden": "true" }, h("span", {}, "Original"), h("span", {}, "Suspect"));
   #ends: Record<"difference" | "evidence", number> = { difference: 0, evidence: 0 };
-  #isRough = false;
+  #isRecorded = false;
 
   constructor(view: HTMLElement, events: StageEvents) {
     super(view, events);
@@ -34,24 +32,20 @@ export class CheckStage extends Stage {
     this.#slider.addEventListener("input", () => this.#look("wipe"));
   }
 
-  override async show(model: Model, inspection: Inspection | null): Promise<void> {
+  protected override clear(): void {
+    super.clear();
     this.#offer(false);
-    await super.show(model, inspection);
   }
 
-  /**
-   * Lays the suspect on its original, in place of any other.
-   *
-   * @param isRough whether the original is what a record keeps of it
-   */
-  async showLaid(overlay: Overlay, isRough: boolean, isWanted: () => boolean): Promise<void> {
+  /** Lays the suspect on its original, in place of any other. */
+  async showLaid(overlay: Overlay, isWanted: () => boolean): Promise<void> {
     await this.draw(isWanted, async () => {
       const [{ viewer }, { Laid }] = await Promise.all([this.loadViewer(), import("./viewer/laid")]);
       if (isWanted()) {
         const laid = new Laid(overlay);
         viewer.lay(laid);
         this.#ends = laid.ends;
-        this.#isRough = isRough;
+        this.#isRecorded = overlay.isRecorded;
         find('[data-laid="evidence"]', this.#tools).hidden = !laid.hasEvidence;
         this.#offer(true);
         this.#look("wipe");
@@ -92,7 +86,7 @@ export class CheckStage extends Stage {
       const end = this.#ends[seen];
       const [title, marks] =
         seen === "difference"
-          ? [`How far apart they are, in % of the original’s diagonal.${this.#isRough ? " A record keeps few triangles: what differs a little is the record." : ""}`, [0, end / 2, end].map((of) => `${short(of * 100)} %`)]
+          ? [`How far apart they are, in % of the original’s diagonal.${this.#isRecorded ? " A record keeps few triangles: what differs a little is the record." : ""}`, [0, end / 2, end].map((of) => `${short(of * 100)} %`)]
           : ["What each place says for your mark: it makes chance so many times less likely.", [0, end / 2, end].map((of) => `${short(Math.exp(of))} ×`)];
       find("p", this.#legend).textContent = title;
       find(".scale", this.#legend).replaceChildren(...marks.map((mark, i) => h("span", {}, i === 2 ? `${mark} or more` : mark)));

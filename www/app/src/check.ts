@@ -2,7 +2,7 @@
 import type { DetailedExtraction, Inspection, Tracing } from "meshmark";
 import { answersList, chargeWords, isFound, type Line } from "./answers";
 import { CheckStage } from "./check-stage";
-import { answers, compared, comparisonRows, headlineOf, isMarked, type Compared } from "./comparing";
+import { answers, compared, comparisonRows, headlineOf, type Compared } from "./comparing";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { GivenField, isRecord, type Given } from "./given";
@@ -173,8 +173,7 @@ export class Check extends View<CheckStage> {
       return;
     }
     const key = keySource();
-    const sha256 = this.inspection?.sha256 ?? null;
-    const answer = await this.run(`Comparing ${model.name} with ${given.name}`, (task) => compared(model, given, key, sha256, task));
+    const answer = await this.run(`Comparing ${model.name} with ${given.name}`, (task) => compared(model, given, key, task));
     if (!answer) {
       return;
     }
@@ -183,7 +182,7 @@ export class Check extends View<CheckStage> {
     const { overlay } = answer;
     if (overlay) {
       this.#isLaid = true;
-      await this.stage.showLaid(overlay, given.kind === "record", () => this.model === model && this.#isLaid);
+      await this.stage.showLaid(overlay, () => this.model === model && this.#isLaid);
     }
   }
 
@@ -205,7 +204,7 @@ export class Check extends View<CheckStage> {
       isOther ? `Your key’s mark, with ${answer.tag === null ? "number" : "tag"} ${name}, not ${expected}` : headlineOf(answer),
       [`${model.name}, compared with ${given.kind === "record" ? "the record" : "the original"} ${given.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}.`],
       answers(answer, given),
-      ...(isMarked(answer) ? [h("p", { class: "hint" }, PROVES_COMPARED)] : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures)]),
+      ...(isMark(answer) ? [h("p", { class: "hint" }, PROVES_COMPARED), details("In numbers", figures)] : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures)]),
       ...(answer.overlay ? [h("p", { class: "hint" }, "The picture beside this shows the suspect where it lies on the original: move the line between them, see how far they are apart, and which places speak for your mark. That last map follows your key: keep it to yourself.")] : []),
       actions(
         button("Save report (HTML)", () => save(renamed(model.name, "report.html"), answer.statement, "text/html")),

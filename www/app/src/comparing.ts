@@ -1,6 +1,8 @@
 /** Comparing a suspect with its original, or with a record: the call, and both answers in words. */
+import { MeshmarkError } from "meshmark/client";
 import type { Comparison, Overlay } from "meshmark/informed";
-import { MeshmarkError, type Client } from "meshmark/client";
+import { sha256 } from "./digest";
+import { h } from "./dom";
 import { engine } from "./engine";
 import type { Given } from "./given";
 import type { KeySource } from "./key-form";
@@ -8,20 +10,22 @@ import { type Model } from "./model";
 import { chance, type Row } from "./outcome";
 import { withKey } from "./reading";
 import type { Task } from "./task";
-import { VERDICTS } from "./words";
-import { h } from "./dom";
+import { isMark, VERDICTS } from "./words";
 
 /** A comparison with all that the page asks for. */
 export type Compared = Comparison & { lnP: number; statement: string; overlay: Overlay | null };
 
 /** Compares, and states what was found. */
-export async function compared(model: Model, given: Given, key: KeySource, suspectSha256: string | null, task: Task): Promise<Compared> {
-  const client: Client = await engine;
+export async function compared(model: Model, given: Given, key: KeySource, task: Task): Promise<Compared> {
+  const client = await engine;
   const { signal, onProgress } = task;
   const role = given.kind === "original" ? "Original" : "Record";
+  const bytesOf = ({ bytes, original }: Model) => original ?? bytes;
+  const suspectBytes = bytesOf(model);
+  const givenBytes = given.kind === "original" ? bytesOf(given.model) : given.bytes;
   const files = [
-    { role: "Suspect", name: model.name, bytes: (model.original ?? model.bytes).length, sha256: suspectSha256 ?? "unknown" },
-    { role, name: given.name, bytes: given.kind === "original" ? (given.model.original ?? given.model.bytes).length : given.bytes.length, sha256: await sha256(bytesOf(given)) },
+    { role: "Suspect", name: model.name, bytes: suspectBytes.length, sha256: await sha256(suspectBytes) },
+    { role, name: given.name, bytes: givenBytes.length, sha256: await sha256(givenBytes) },
   ];
   const owner = key.owner === null ? "--key-file KEY" : `--owner ${JSON.stringify(key.owner)} --passphrase-file PASSPHRASE`;
   const work = key.work === null ? "" : ` --work ${JSON.stringify(key.work)}`;
@@ -48,25 +52,12 @@ function naming(name: string): (error: unknown) => never {
   };
 }
 
-function bytesOf(given: Given): Uint8Array<ArrayBuffer> {
-  return given.kind === "original" ? (given.model.original ?? given.model.bytes) : given.bytes;
-}
-
-async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
-  const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
-  return Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("");
-}
-
-export function isMarked({ verdict }: Comparison): boolean {
-  return verdict === "found" || verdict === "present";
-}
-
 /** The answers one upon the other: is the mark there, and is the shape the original's. */
 export function answers(comparison: Compared, given: Given): HTMLElement {
   return h(
     "dl",
     { class: "answers" },
-    h("div", { "data-answer": isMarked(comparison) ? "yes" : "no" }, h("dt", {}, "Is your mark in it?"), h("dd", {}, ...markWords(comparison))),
+    h("div", { "data-answer": isMark(comparison) ? "yes" : "no" }, h("dt", {}, "Is your mark in it?"), h("dd", {}, ...markWords(comparison))),
     h("div", { "data-answer": comparison.shape === "same" ? "yes" : "no" }, h("dt", {}, "Is the shape the original’s?"), h("dd", {}, shapeWords(comparison, given))),
   );
 }
@@ -103,10 +94,9 @@ export function headlineOf({ verdict, shape }: Comparison): string {
 }
 
 /** What a comparison found, in numbers. */
-export function comparisonRows({ tag, witness, lnP }: Compared): Row[] {
+export function comparisonRows({ witness, lnP }: Compared): Row[] {
   const witnesses = { surface: "the surface", vertices: "vertices that were kept", blind: "the suspect alone" };
   return [
-    ["Tag", tag === null ? "none read" : h("code", {}, tag)],
     ["Chance of this without the key", chance(lnP)],
     ...(witness === null ? [] : [["Told by", witnesses[witness]] satisfies Row]),
   ];

@@ -1,6 +1,6 @@
 /** A suspect that lies on its original: both in one place, and in colours how far they are from each other and what speaks for the mark. */
 import type { Overlay, Sheet } from "meshmark/informed";
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, MeshStandardMaterial, Sphere, SRGBColorSpace, Vector3, type Material } from "three";
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, MeshStandardMaterial, Sphere, SRGBColorSpace, Vector3 } from "three";
 import { colorAt } from "./colormap";
 import { WIRES } from "./layer";
 import type { Wipe } from "./orbit";
@@ -26,6 +26,7 @@ export class Laid {
   readonly wipe: Omit<Wipe, "at">;
   readonly #parts: Record<"original" | "suspect" | "cut" | "ghost" | "added" | "difference" | "evidence", Mesh>;
   readonly #wires: Record<"original" | "suspect", Mesh>;
+  #hasWires = false;
 
   constructor({ original, suspect, differences, additions, mostDifference, evidence, mostEvidence, from }: Overlay) {
     this.from = new Vector3(...(from as [number, number, number]));
@@ -47,13 +48,11 @@ export class Laid {
       difference: new Mesh(map(differences, mostDifference), MAP),
       evidence: new Mesh(map(evidence ?? new Float32Array(differences.length), mostEvidence), MAP),
     };
-    this.#wires = { original: new Mesh(whole, WIRES as Material), suspect: new Mesh(own, WIRES as Material) };
+    this.#wires = { original: new Mesh(whole, WIRES), suspect: new Mesh(own, WIRES) };
     this.root.add(...Object.values(this.#parts), ...Object.values(this.#wires));
     this.wipe = { left: () => this.#only(["original"], "original"), right: () => this.#only(["suspect", "ghost"], "suspect") };
     this.show("difference", false);
   }
-
-  #hasWires = false;
 
   /** Shows a map; of a wipe, what is drawn is chosen side by side. */
   show(look: LaidLook, wireframe: boolean): void {

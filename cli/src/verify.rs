@@ -2,6 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::informed::Informed;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
@@ -14,6 +15,8 @@ pub struct Verify {
     #[command(flatten)]
     suspect: Suspect,
     #[command(flatten)]
+    informed: Informed,
+    #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
     payload: PayloadArgument,
@@ -25,6 +28,12 @@ impl Verify {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let (payload, key) = (self.payload.read()?, self.owner.key()?);
+        // All payloads are charged here, as if none had been expected.
+        if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
+            return self
+                .telling
+                .of_comparison(compared.comparison, Some(payload), clock);
+        }
         let extraction = self.suspect.examine(&key, Some(payload), &mut clock)?;
         self.telling.of(extraction, clock)
     }

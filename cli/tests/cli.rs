@@ -507,6 +507,30 @@ fn cli_reads_with_the_original_and_with_the_record() {
         assert_eq!(answer["tag"], "ADA-1", "{with}");
         assert_eq!(answer["shape"], "same", "{with}");
         assert_eq!(answer["witness"], "surface", "{with}");
+        let verify = |tag: &str| format!("verify copy.glb {with} --tag {tag} {ADA}");
+        assert_eq!(folder.run(&verify("ADA-1")).0, 0, "{with}");
+        let (code, answer, _) = folder.run(&verify("ADA-2"));
+        assert_eq!((code, &answer["tag"]), (1, &json!("ADA-1")), "{with}");
+    }
+    for (with, role) in [
+        ("--original model.glb", "Original"),
+        ("--record marked.meshmark.json", "Record"),
+    ] {
+        let stated = format!("extract marked.glb {with} --report report.html {ADA}");
+        assert_eq!(folder.run(&stated).0, 0, "{with}");
+        let report = fs::read_to_string(folder.path("report.html")).unwrap();
+        for words in [
+            "Your mark was found.",
+            "The shape is the original",
+            "data:image/png;base64,",
+            "whoever holds the key can make an",
+            role,
+            with,
+        ] {
+            assert!(report.contains(words), "{with}: {words}");
+        }
+        let is_recorded = report.contains("what the record keeps of it");
+        assert_eq!(is_recorded, role == "Record");
     }
     let (code, answer, _) = folder.run(&format!("extract model.glb --original model.glb {ADA}"));
     assert_eq!((code, &answer["shape"]), (1, &json!("same")), "{answer}");
@@ -865,15 +889,13 @@ fn a_reading_is_stated_too() {
     let folder = Folder::new("statement");
     let (code, _, _) = folder.run(&format!("embed model.glb marked.glb --tag ADA-1 {ADA}"));
     assert_eq!(code, 0);
-    let extract =
-        format!("extract marked.glb --report report.html --report-original model.glb {ADA}");
+    let extract = format!("extract marked.glb --report report.html {ADA}");
     assert_eq!(folder.run(&extract).0, 0);
     let report = fs::read_to_string(folder.path("report.html")).unwrap();
     for words in [
         "Your mark was found.",
         "ADA-1",
         "marked.glb",
-        "model.glb",
         "less than 1 in 10^38",
     ] {
         assert!(report.contains(words), "{words}");

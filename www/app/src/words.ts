@@ -55,7 +55,7 @@ export function plain(words: string): string {
 }
 
 /** Whether a mark is there beyond chance, with a tag or without. */
-export function isMark({ verdict }: Extraction): boolean {
+export function isMark({ verdict }: Pick<Extraction, "verdict">): boolean {
   return verdict === "found" || verdict === "present";
 }
 

@@ -1,0 +1,14 @@
+//! Pictures of surfaces, drawn without a graphics card: for files that a person prints. The same bytes on every machine.
+//!
+//! | file | what |
+//! |---|---|
+//! | `draw` | triangles in perspective, lit, the nearer before the farther |
+//! | `png` | pixels as a file |
+//! | `colour` | a scale of colours |
+
+mod colour;
+mod draw;
+mod png;
+
+pub use colour::{Colour, viridis};
+pub use draw::{Painted, Picture, View};

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::owner::Owner;
 use crate::report::Report;
 use crate::statement::StatementArgument;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
 use meshmark::Finding;
 use std::path::PathBuf;
@@ -17,11 +17,13 @@ pub struct Extract {
     suspect: Suspect,
     /// The model as it was before it was marked: with it a copy is found that has lost what INPUT alone is read by. It has to be older than
     /// the key's use on it, or the answer proves nothing to others
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "report"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "local", "report"])]
     original: Option<PathBuf>,
     /// What `embed --record` wrote, in the stead of the original
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original", "report"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "local", "original", "report"])]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -42,8 +44,12 @@ impl Extract {
             let comparison = self.suspect.compare_with_record(record, &key, &mut clock)?;
             return self.telling.of_comparison(comparison, clock);
         }
-        let extraction = self.suspect.examine(&key, None, &mut clock)?;
-        let repeated = format!("meshmark extract {}", self.suspect.arguments());
+        let extraction = self.suspect.examine(&key, None, self.local, &mut clock)?;
+        let repeated = format!(
+            "meshmark extract {}{}",
+            self.suspect.arguments(),
+            self.local.argument()
+        );
         let finding = Finding::Reading(&extraction);
         self.statement
             .write(finding, self.suspect.path(), &key, &self.owner, &repeated)?;

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
 
 /// Test a model, or measured evidence, for an expected payload
@@ -13,6 +13,8 @@ use clap::Args;
 pub struct Verify {
     #[command(flatten)]
     suspect: Suspect,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -25,7 +27,9 @@ impl Verify {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let (payload, key) = (self.payload.read()?, self.owner.key()?);
-        let extraction = self.suspect.examine(&key, Some(payload), &mut clock)?;
+        let extraction = self
+            .suspect
+            .examine(&key, Some(payload), self.local, &mut clock)?;
         self.telling.of(extraction, clock)
     }
 }

@@ -204,7 +204,10 @@ fn cli_finds_a_piece_by_local() {
     let (code, _, words) = here.run(&format!(
         "embed part.glb x.glb {ADA} --tag ADA-1 --carriers local"
     ));
-    assert!(code == 2 && words.contains("options.no-solid"), "{words}");
+    assert!(
+        code == 2 && words.contains("name the carrier solid"),
+        "{words}"
+    );
 }
 
 #[test]

@@ -13,9 +13,7 @@ use meshmark::internals::detection::{LN_P_FOUND, Statistic};
 use meshmark::internals::geometry::diagonal;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::progress::ignore;
-use meshmark::{
-    Carrier, EmbedOptions, Extraction, Key, Strength, Surface, detect_with_local, embed,
-};
+use meshmark::{Carrier, EmbedOptions, Extraction, Key, Strength, embed};
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::time::Instant;
@@ -26,8 +24,6 @@ const CUTS: u64 = 3;
 const FEWEST_VERTICES: usize = 2500;
 /// What the judge charges LOCAL: it has a sixteenth of the probability.
 const LN_LOCAL: f64 = 2.772_588_722_239_781; // ln 16
-/// What it charges each of the others.
-const LN_OTHERS: f64 = 0.757_685_701_697_516; // ln (32 / 15)
 
 type Change = fn(&Mesh, u64) -> Mesh;
 
@@ -104,34 +100,27 @@ pub fn tables(
     let names = marked.iter().map(|model| model.name.as_str());
     let _ = writeln!(
         text,
-        "\nFound by LOCAL, of three planes; and cells that were found by any, and without it.\n\n\
-         | attack | {} | cells by LOCAL | models with two or more | by any | by SOLID or RING |\n|---|{}--:|--:|--:|--:|",
+        "\nFound by LOCAL, of three planes.\n\n| attack | {} | cells | models with two or more |\n|---|{}--:|--:|",
         names.collect::<Vec<_>>().join(" | "),
         "--:|".repeat(marked.len())
     );
     for (row, (name, cut, change)) in ROWS.into_iter().enumerate() {
-        let cells: Vec<Vec<Cell>> = marked
+        let found: Vec<usize> = marked
             .par_iter()
             .map(|model| {
+                let is_found = |number| model.is_found(cut, change, seed.number(name, number));
                 let numbers = (0..CUTS).map(|number| number + CUTS * row as u64);
-                numbers
-                    .map(|number| model.cell(cut, change, seed.number(name, number)))
-                    .collect()
+                numbers.filter(|number| is_found(*number)).count()
             })
             .collect();
-        let count = |is: fn(&Cell) -> bool| cells.iter().flatten().filter(|cell| is(cell)).count();
-        let by_local = |cells: &Vec<Cell>| cells.iter().filter(|cell| cell.by_local).count();
-        let found: Vec<usize> = cells.iter().map(by_local).collect();
         let each: Vec<String> = found.iter().map(usize::to_string).collect();
         let line = format!(
-            "| {name} | {} | {} of {} | {} of {} | {} | {} |",
+            "| {name} | {} | {} of {} | {} of {} |",
             each.join(" | "),
-            count(|cell| cell.by_local),
+            found.iter().sum::<usize>(),
             CUTS as usize * marked.len(),
             found.iter().filter(|found| **found >= 2).count(),
             marked.len(),
-            count(|cell| cell.by_local || cell.by_others),
-            count(|cell| cell.by_others),
         );
         let _ = writeln!(text, "{line}");
         eprintln!("{line}");
@@ -150,12 +139,6 @@ struct Marked {
     /// What is read of it as it is, marked without LOCAL and with it.
     without: Extraction,
     with: Extraction,
-}
-
-/// What was found in a piece.
-struct Cell {
-    by_local: bool,
-    by_others: bool,
 }
 
 impl Marked {
@@ -188,27 +171,14 @@ impl Marked {
         }))
     }
 
-    fn cell(&self, cut: f64, change: Change, seed: u64) -> Cell {
+    /// Whether LOCAL alone says that a piece is the owner's: what the judge hears beside that is not looked at.
+    fn is_found(&self, cut: f64, change: Change, seed: u64) -> bool {
         let piece = match cut {
             0.0 => self.mesh.clone(),
             cut => crop(&self.mesh, cut, seed),
         };
         let suspect = similarity(&change(&piece, seed), seed);
-        let positions: Vec<[f64; 3]> = suspect.positions.iter().map(|p| p.to_array()).collect();
-        let surface = Surface::new(&positions, &suspect.triangles);
-        let Ok(read) = detect_with_local(surface, &self.key, None) else {
-            return Cell {
-                by_local: false,
-                by_others: false,
-            };
-        };
-        let of = ln_p_by(&read);
-        Cell {
-            by_local: of(Carrier::Local) + LN_LOCAL <= LN_P_FOUND,
-            by_others: Carrier::STANDARD
-                .into_iter()
-                .any(|carrier| of(carrier) + LN_OTHERS <= LN_P_FOUND),
-        }
+        ln_p(&Measurement::new(&suspect), &self.key) + LN_LOCAL <= LN_P_FOUND
     }
 }
 

@@ -96,6 +96,7 @@ fn stages(criterion: &mut Criterion) {
         admissible: &Admissible::default(),
         rms_rel: RMS_REL,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let mark = Mark {

@@ -62,6 +62,8 @@ pub use evidence::{Evidence, EvidenceError};
 pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
+#[cfg(feature = "local")]
+pub use watermark::detect_with_local;
 pub use watermark::{
     Advice, Buyer, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport,
     Embedding, Error, Extraction, Finding, Forecast, FoundIn, Holds, Input, Inspection, Level,

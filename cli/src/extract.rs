@@ -6,7 +6,7 @@ use crate::informed::Informed;
 use crate::owner::Owner;
 use crate::report::Report;
 use crate::statement::StatementArgument;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
 use meshmark::Finding;
 
@@ -17,6 +17,8 @@ pub struct Extract {
     suspect: Suspect,
     #[command(flatten)]
     informed: Informed,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -29,7 +31,11 @@ impl Extract {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let key = self.owner.key()?;
-        let repeated = format!("meshmark extract {}", self.suspect.arguments());
+        let repeated = format!(
+            "meshmark extract {}{}",
+            self.suspect.arguments(),
+            self.local.argument()
+        );
         let suspect = ("Suspect", self.suspect.path());
         if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
             let finding = Finding::Comparison(&compared.comparison, compared.overlay.as_ref());
@@ -39,7 +45,7 @@ impl Extract {
                 .write(finding, &looked_at, &key, &self.owner, &repeated)?;
             return self.telling.of_comparison(compared.comparison, None, clock);
         }
-        let extraction = self.suspect.examine(&key, None, &mut clock)?;
+        let extraction = self.suspect.examine(&key, None, self.local, &mut clock)?;
         let finding = Finding::Reading(&extraction);
         self.statement
             .write(finding, &[suspect], &key, &self.owner, &repeated)?;

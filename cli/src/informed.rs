@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 pub struct Informed {
     /// The model as it was before it was marked: with it a copy is found that has lost what INPUT alone is read by. It has to be older than
     /// the key's use on it, or the answer proves nothing to others
-    #[arg(long, value_name = "FILE", conflicts_with = "evidence")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "local"])]
     original: Option<PathBuf>,
     /// What `embed --record` wrote, in the stead of the original
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "local", "original"])]
     record: Option<PathBuf>,
 }
 

@@ -6,8 +6,8 @@ use crate::file::{Found, load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, Verdict, detect, extract,
-    measure, trace, trace_evidence, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, Verdict, detect,
+    detect_with_local, extract, measure, trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -27,14 +27,16 @@ impl Suspect {
         &self,
         key: &Key,
         expected: Option<Payload>,
+        local: LocalArgument,
         clock: &mut Clock,
     ) -> Result<Extraction, Failure> {
         if !self.evidence {
-            return Ok(detect(
-                open_suspect(&self.input)?.suspect(clock),
-                key,
-                expected,
-            )?);
+            let opened = open_suspect(&self.input)?;
+            let suspect = opened.suspect(clock);
+            return Ok(match local.local {
+                true => detect_with_local(suspect, key, expected)?,
+                false => detect(suspect, key, expected)?,
+            });
         }
         let evidence = self.stored()?;
         clock.start("test");
@@ -82,6 +84,21 @@ impl Suspect {
 
     fn stored(&self) -> Result<Evidence, Failure> {
         Evidence::from_bytes(&load(&self.input)?).map_err(Failure::of)
+    }
+}
+
+/// Whether LOCAL is looked for.
+#[derive(Args, Clone, Copy)]
+pub struct LocalArgument {
+    /// Look for what LOCAL marked too, which a piece still holds that was cut out, and then simplified or remeshed. It takes seconds
+    #[arg(long, conflicts_with = "evidence")]
+    local: bool,
+}
+
+impl LocalArgument {
+    /// What somebody has to say on the command line to read the same.
+    pub fn argument(self) -> &'static str {
+        if self.local { " --local" } else { "" }
     }
 }
 

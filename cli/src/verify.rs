@@ -6,7 +6,7 @@ use crate::informed::Informed;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
 
 /// Test a model, or measured evidence, for an expected payload
@@ -16,6 +16,8 @@ pub struct Verify {
     suspect: Suspect,
     #[command(flatten)]
     informed: Informed,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -34,7 +36,9 @@ impl Verify {
                 .telling
                 .of_comparison(compared.comparison, Some(payload), clock);
         }
-        let extraction = self.suspect.examine(&key, Some(payload), &mut clock)?;
+        let extraction = self
+            .suspect
+            .examine(&key, Some(payload), self.local, &mut clock)?;
         self.telling.of(extraction, clock)
     }
 }

@@ -147,6 +147,69 @@ fn cli_embeds_and_extracts() {
     assert_eq!(report.get("carriers"), None);
 }
 
+/// A piece that was cut out and simplified is found by LOCAL, where it is looked for.
+#[test]
+fn cli_finds_a_piece_by_local() {
+    let here = Folder::new("local");
+    let part = meshmark::internals::mesh::shapes::cad_part();
+    fs::write(
+        here.path("part.glb"),
+        meshmark::internals::scene::to_glb(&part),
+    )
+    .unwrap();
+    let (code, report, _) = here.run(&format!(
+        "embed part.glb marked.glb {ADA} --tag ADA-1 --strength strong --carriers solid,ring,local"
+    ));
+    assert_eq!((code, &report["readBack"]["tag"]), (0, &"ADA-1".into()));
+    let steps = [
+        "--step",
+        "crop 50 %",
+        "--step",
+        "simplify 50",
+        "--seed",
+        "3",
+    ];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+    command
+        .args(["attack", "marked.glb", "piece.glb"])
+        .args(steps);
+    assert!(
+        command
+            .current_dir(&here.0)
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+
+    let (code, report, _) = here.run(&format!("extract piece.glb {ADA}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+    for command in ["extract", "verify --tag ADA-1"] {
+        let (code, report, _) = here.run(&format!("{command} piece.glb --local {ADA}"));
+        assert_eq!(
+            (code, &report["verdict"]),
+            (0, &"present".into()),
+            "{command}"
+        );
+        let reason = report["reason"].as_str().unwrap();
+        assert!(reason.starts_with("Found by LOCAL, in "), "{reason}");
+        assert_eq!(report["carriers"][2]["name"], "local");
+    }
+    let other = "--owner Ada --passphrase-file other.txt";
+    let (code, report, _) = here.run(&format!("extract piece.glb --local {other}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+
+    let (code, ..) = here.run(&format!("extract piece.glb --local --evidence {ADA}"));
+    assert_eq!(code, 2);
+    let (code, _, words) = here.run(&format!(
+        "embed part.glb x.glb {ADA} --tag ADA-1 --carriers local"
+    ));
+    assert!(
+        code == 2 && words.contains("name the carrier solid"),
+        "{words}"
+    );
+}
+
 #[test]
 fn cli_measures_once_and_reads_the_evidence() {
     let here = Folder::new("evidence");

@@ -95,7 +95,8 @@ struct Arguments {
     /// Instead of the grid: the host and the marked model of docs/VECTORS.md, in a new folder.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     vectors: Option<PathBuf>,
-    /// Instead of the grid: pieces of plain models that LOCAL alone marks, cut out and then changed, and so many wrong keys; prints tables.
+    /// Instead of the grid: pieces of plain models that all carriers mark, cut out and then changed, read by LOCAL; and so many wrong keys;
+    /// prints tables.
     #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
     local: Option<u64>,
     /// Of --wild and --local: subtle, balanced, strong, or a fraction of the diagonal.

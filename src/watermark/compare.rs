@@ -118,6 +118,7 @@ pub(super) fn with_host<T>(
         admissible: &scene.admissible,
         rms_rel: options.strength.rms_rel(),
         hidden: options.strength.is_hidden(),
+        share: 1.0,
         on_top: false,
     }))
 }
@@ -242,7 +243,7 @@ pub(super) fn read_blind(
     progress: &mut dyn Progress,
 ) -> Result<Blind, Error> {
     let judge = Judge::new(key, None, Input::Model).one_of(2);
-    let mut readings = Carrier::ALL.map(|_| Default::default());
+    let mut readings = Carrier::STANDARD.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
         let is_settled = |reading: &Reading| judge.is_settled(reading);
         readings[carrier as usize] = carrier.read_until(mesh, key, &is_settled, progress)?;

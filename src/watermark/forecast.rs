@@ -59,9 +59,9 @@ pub(super) fn forecast(
         let mut report = |_, _| progress.report(Stage::Forecast, done);
         let is_smoothed = name == "smooth";
         // Mostly the first carrier says all: the others are asked only where it does not.
-        let mut readings = Carrier::ALL.map(|_| Default::default());
+        let mut readings = Carrier::STANDARD.map(|_| Default::default());
         let mut found = judge.conclude(&readings);
-        for carrier in Carrier::ALL {
+        for carrier in Carrier::STANDARD {
             let is_settled = |reading: &Reading| judge.is_settled(reading);
             let reading =
                 carrier.read_copy(&suspect, &host, is_smoothed, key, &is_settled, &mut report)?;

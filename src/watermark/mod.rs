@@ -31,6 +31,8 @@ pub use compare::{compare, compare_overlaid};
 pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error, PlanError, RecordError};
+#[cfg(feature = "local")]
+pub use extract::detect_with_local;
 pub use extract::{detect, extract, extract_many, measure, verify};
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};

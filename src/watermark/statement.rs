@@ -94,7 +94,7 @@ impl Statement<'_> {
              <section><h2>How to repeat it</h2>\n<p>Whoever has the key and the files gets the same answer, on any machine:</p>\n<pre>{}</pre></section>\n\
              <section><h2>When it was so</h2>\n<p>Nothing was sent anywhere, and nothing here proves a date. To show later that the suspect or this report existed today, hand its \
              SHA-256 to a timestamping service (RFC 3161) or to a notary; a timestamp of the marked model, taken when it was marked, shows more.</p></section>\n</html>\n",
-             illustration::STYLE,
+            illustration::STYLE,
             commands.join("\n"),
             plain_title = escaped(title),
             title = text(title),
@@ -241,11 +241,12 @@ impl Statement<'_> {
     }
 
     fn limits(&self) -> Vec<&'static str> {
-        let reading = match self.finding {
-            Finding::Reading(reading) => reading,
-            Finding::Tracing(tracing, _) => &tracing.reading,
+        let caution = match self.finding {
+            Finding::Reading(reading) => reading.caution,
+            Finding::Tracing(tracing, _) => tracing.reading.caution,
+            Finding::Comparison(..) => None,
         };
-        let mut limits = Vec::from_iter(reading.caution);
+        let mut limits = Vec::from_iter(caution);
         let is_positive = match self.finding {
             Finding::Reading(reading) => {
                 matches!(reading.verdict, Verdict::Found | Verdict::Present)

@@ -152,6 +152,7 @@ fn informed_bound_holds_for_wrong_keys() {
         admissible: &admissible,
         rms_rel: 0.0004,
         hidden: true,
+        share: 1.0,
         on_top: false,
     };
     let surface = Original::new(&original);

@@ -429,6 +429,7 @@ mod tests {
             admissible: &admissible,
             rms_rel: 0.0004,
             hidden: true,
+            share: 1.0,
             on_top: false,
         };
         let observations: Vec<Observation> = scattered(&mesh, 2000, 1)

@@ -24,6 +24,8 @@ mod key;
 mod layers;
 mod leeway;
 mod levels;
+#[cfg(not(target_arch = "wasm32"))]
+// no module for JavaScript has LOCAL
 mod local;
 mod mesh;
 mod models;

@@ -32,6 +32,7 @@ pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error, PlanError, RecordError};
 pub use extract::{detect, extract, extract_many, measure, verify};
+pub use illustration::Illustration;
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
 pub use note::{

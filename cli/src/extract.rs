@@ -8,7 +8,7 @@ use crate::report::Report;
 use crate::statement::StatementArgument;
 use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
-use meshmark::Finding;
+use meshmark::{Finding, Illustration};
 
 /// Read the mark of a key from a model, or from measured evidence
 #[derive(Args)]
@@ -38,7 +38,10 @@ impl Extract {
         );
         let suspect = ("Suspect", self.suspect.path());
         if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
-            let finding = Finding::Comparison(&compared.comparison, compared.overlay.as_ref());
+            let picture = compared.overlay.as_ref();
+            let picture = picture.filter(|_| self.statement.is_wanted());
+            let picture = picture.map(Illustration::of);
+            let finding = Finding::Comparison(&compared.comparison, picture.as_ref());
             let looked_at = [suspect, (compared.role, compared.path)];
             let repeated = format!("{repeated} {}", compared.argument);
             self.statement

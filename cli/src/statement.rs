@@ -20,6 +20,11 @@ pub struct StatementArgument {
 }
 
 impl StatementArgument {
+    /// Whether one is asked for.
+    pub fn is_wanted(&self) -> bool {
+        self.report.is_some()
+    }
+
     /// Writes the statement, where one is asked for. `looked_at` are files by what they are to the reader, the suspect first; `repeated` is the
     /// command that repeats it, without the owner.
     pub fn write(

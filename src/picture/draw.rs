@@ -206,3 +206,39 @@ impl Eye {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearer_triangle_is_seen_whatever_is_drawn_first() {
+        let square = |z: f32| {
+            [
+                [-1.0, -1.0, z],
+                [1.0, -1.0, z],
+                [1.0, 1.0, z],
+                [-1.0, 1.0, z],
+            ]
+        };
+        let (near, far) = (square(0.5), square(-0.5));
+        let view = View::of(&[near, far].concat(), DVec3::Z);
+        let painted = |positions, colour| Painted {
+            positions,
+            triangles: &[[0, 1, 2], [0, 2, 3]],
+            colour,
+            lifted: 0.0,
+        };
+        let (red, blue) = (|_| [1.0, 0.0, 0.0], |_| [0.0, 0.0, 1.0]);
+        let (front, back) = (painted(&near, &red), painted(&far, &blue));
+        for order in [[&front, &back], [&back, &front]] {
+            let mut picture = Picture::new(20, 10);
+            order.map(|painted| picture.draw((1, 2), &view, painted));
+            let middle = picture.height / 2 * picture.width;
+            let [r, _, b] = picture.pixels[middle + picture.width * 3 / 4];
+            assert!(r > 0.5 && b == 0.0, "{r} {b}");
+            let left = picture.pixels[middle + picture.width / 4];
+            assert_eq!(left, [1.0; 3], "it is drawn into the other panel");
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! Pictures of surfaces, drawn without a graphics card: for files that a person prints. The same bytes on every machine.
+//! Pictures of surfaces, drawn without a graphics card: for files that a person prints. Sums, products and square roots alone: the same everywhere.
 //!
 //! | file | what |
 //! |---|---|

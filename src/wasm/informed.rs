@@ -3,7 +3,7 @@
 use super::options::Options;
 use super::statement::stated;
 use super::{argument, encoded, files_from, set, thrown};
-use crate::watermark::{self, Comparison, Error, Overlay, RecordOptions, Sheet};
+use crate::watermark::{self, Comparison, Error, Illustration, Overlay, RecordOptions, Sheet};
 use crate::{Finding, Key, Model, Surface};
 use js_sys::{Float32Array, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
@@ -147,7 +147,8 @@ fn told(
     let statement = match asked.statement.is_undefined() {
         true => None,
         false => {
-            let finding = Finding::Comparison(&comparison, overlay.as_ref());
+            let picture = overlay.as_ref().map(Illustration::of);
+            let finding = Finding::Comparison(&comparison, picture.as_ref());
             Some(stated(finding, key, &asked.statement)?)
         }
     };

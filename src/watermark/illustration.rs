@@ -23,8 +23,22 @@ pub(super) const STYLE: &str = "figure{margin:1.2rem 0}img{width:100%;display:bl
     .scale,.key{display:inline-block;height:.8em;width:.8em;border:1px solid #777;-webkit-print-color-adjust:exact;print-color-adjust:exact}\
     .scale{width:6em;background:linear-gradient(90deg,#440154,#3b528b,#21918c,#5ec962,#fde725)}.cut{background:#d1d1d1}.added{background:#db4d29}";
 
-/// The picture as HTML, with a caption.
-pub(super) fn figure(overlay: &Overlay) -> String {
+/// The picture of an overlay in a statement, with a caption. What makes it is linked where it is asked for: most statements have none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Illustration {
+    pub(super) html: String,
+}
+
+impl Illustration {
+    /// Draws an overlay: the original, the suspect on it, and how far they are apart; nothing that follows the key.
+    pub fn of(overlay: &Overlay) -> Illustration {
+        Illustration {
+            html: figure(overlay),
+        }
+    }
+}
+
+fn figure(overlay: &Overlay) -> String {
     let end = 100.0 * overlay.most_difference;
     let recorded = match overlay.is_recorded {
         true => {

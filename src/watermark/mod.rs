@@ -34,6 +34,7 @@ pub use error::{Advice, Error, PlanError, RecordError};
 #[cfg(feature = "local")]
 pub use extract::detect_with_local;
 pub use extract::{detect, extract, extract_many, measure, verify};
+pub use illustration::Illustration;
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
 pub use note::{

@@ -1,7 +1,6 @@
 //! A statement: what was found in a suspect, as one HTML file that a person prints or sends. No script, nothing from the network.
 
-use super::illustration;
-use super::overlay::Overlay;
+use super::illustration::{self, Illustration};
 use super::report::{Comparison, Extraction, Input, Shape, Verdict};
 use super::trace::{Traced, Tracing};
 use std::f64::consts::LN_10;
@@ -28,8 +27,8 @@ pub enum Finding<'a> {
     Reading(&'a Extraction),
     /// Whose copies are in it, and what the ledger calls some numbers.
     Tracing(&'a Tracing, &'a [(u64, String)]),
-    /// With the original or a record; and the suspect laid on it, for a picture.
-    Comparison(&'a Comparison, Option<&'a Overlay>),
+    /// With the original or a record; and a picture of the suspect laid on it.
+    Comparison(&'a Comparison, Option<&'a Illustration>),
 }
 
 /// What a statement says beside the finding. Every word is shown as text, whatever is in it.
@@ -169,7 +168,7 @@ impl Statement<'_> {
 
     /// Of a comparison: whether the shape is the original's, in words and in a picture.
     fn shape(&self) -> String {
-        let Finding::Comparison(comparison, overlay) = self.finding else {
+        let Finding::Comparison(comparison, picture) = self.finding else {
             return String::new();
         };
         let near = percent(comparison.near);
@@ -192,7 +191,7 @@ impl Statement<'_> {
                     .to_owned()
             }
         };
-        let figure = overlay.map(illustration::figure).unwrap_or_default();
+        let figure = picture.map_or("", |picture| &picture.html);
         format!("<p>{}</p>\n{figure}", text(&words))
     }
 

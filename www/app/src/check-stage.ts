@@ -80,17 +80,23 @@ export class CheckStage extends Stage {
     this.#slider.setAttribute("aria-valuetext", `${part} % original, ${100 - part} % suspect`);
     this.#line.hidden = seen !== "wipe";
     this.#line.style.left = `${part}%`;
-    this.#legend.hidden = seen !== "difference" && seen !== "evidence";
+    this.#legend.hidden = seen === "suspect" || seen === "wipe";
     if (seen === "difference" || seen === "evidence") {
-      this.#legend.dataset["map"] = seen;
-      const end = this.#ends[seen];
-      const [title, marks] =
-        seen === "difference"
-          ? [`How far apart they are, in % of the original’s diagonal.${this.#isRecorded ? " A record keeps few triangles: what differs a little is the record." : ""}`, [0, end / 2, end].map((of) => `${short(of * 100)} %`)]
-          : ["What each place says for your mark: it makes chance so many times less likely.", [0, end / 2, end].map((of) => `${short(Math.exp(of))} ×`)];
-      find("p", this.#legend).textContent = title;
-      find(".scale", this.#legend).replaceChildren(...marks.map((mark, i) => h("span", {}, i === 2 ? `${mark} or more` : mark)));
+      this.#tellScale(seen);
     }
+  }
+
+  /** Says what the colours of a map mean. */
+  #tellScale(map: "difference" | "evidence"): void {
+    const end = this.#ends[map];
+    const record = this.#isRecorded ? " A record keeps few triangles: what differs a little is the record." : "";
+    const [title, value] = {
+      difference: [`How far apart they are, in % of the original’s diagonal.${record}`, (of: number) => `${short(of * 100)} %`] as const,
+      evidence: ["What each place says for your mark: it makes chance so many times less likely.", (of: number) => `${short(Math.exp(of))} ×`] as const,
+    }[map];
+    const marks = [value(0), value(end / 2), `${value(end)} or more`];
+    find("p", this.#legend).textContent = title;
+    find(".scale", this.#legend).replaceChildren(...marks.map((mark) => h("span", {}, mark)));
   }
 
   #choices(): HTMLElement[] {

@@ -91,6 +91,7 @@ impl Carrier {
     }
 
     /// The same in a host where SOLID chose so: LOCAL leaves those windows as they are, nearly.
+    #[cfg_attr(not(feature = "local"), allow(unused_variables))] // LOCAL alone looks at that
     pub(crate) fn embed_above(
         self,
         host: &Host,
@@ -107,6 +108,7 @@ impl Carrier {
     }
 
     /// Whether a mesh has what it takes beside SOLID.
+    #[cfg_attr(not(feature = "local"), allow(unused_variables))] // LOCAL alone looks at that
     pub(crate) fn is_beside_solid(self, mesh: &Mesh) -> bool {
         match self {
             Carrier::Solid | Carrier::Ring => false,

@@ -3,6 +3,9 @@
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
 mod architecture;
+#[cfg(not(target_arch = "wasm32"))]
+// the modules for JavaScript are without LOCAL, and embedding it takes a minute there
+mod asked;
 mod attack;
 #[cfg(not(target_arch = "wasm32"))]
 // a hundred thousand keys, and nothing that differs between targets

@@ -12,7 +12,7 @@ use meshmark::internals::mesh::{Admissible, Edges, shapes};
 use meshmark::internals::paper::{Ranking, rank};
 use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract, prepare};
+use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract};
 
 /// 0.04 % of the diagonal.
 const RMS_REL: f64 = 0.0004;
@@ -57,14 +57,6 @@ fn pipeline(criterion: &mut Criterion) {
                 &options,
             )
         })
-    });
-    group.bench_function("stamp a copy", |b| {
-        let (plan, _) = prepare(&host, &key, &options).expect("a plan");
-        let mut numbers = 1..;
-        b.iter(|| {
-            plan.stamp(numbers.next().expect("endless"))
-                .expect("a copy")
-        });
     });
     group.bench_function("measure", |b| b.iter(|| Evidence::of_mesh(&mesh)));
     group.bench_function("extract, unmarked", |b| b.iter(|| extract(&evidence, &key)));

@@ -233,7 +233,9 @@ mod tests {
         let (front, back) = (painted(&near, &red), painted(&far, &blue));
         for order in [[&front, &back], [&back, &front]] {
             let mut picture = Picture::new(20, 10);
-            order.map(|painted| picture.draw((1, 2), &view, painted));
+            order
+                .into_iter()
+                .for_each(|painted| picture.draw((1, 2), &view, painted));
             let middle = picture.height / 2 * picture.width;
             let [r, _, b] = picture.pixels[middle + picture.width * 3 / 4];
             assert!(r > 0.5 && b == 0.0, "{r} {b}");

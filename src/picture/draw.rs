@@ -1,8 +1,8 @@
 //! Triangles in perspective, lit from over the left shoulder, the nearer before the farther.
 
 use super::colour::Colour;
-use super::png::png;
 use glam::{DMat3, DVec3};
+use png::{ColorType, Encoder};
 
 /// Each pixel is the mean of so many by so many.
 const FINER: usize = 2;
@@ -158,8 +158,15 @@ impl Picture {
             }
             sum.map(|c| (c * 255.0 / (FINER * FINER) as f32).round() as u8)
         };
-        let pixels: Vec<[u8; 3]> = (0..width * height).map(pixel).collect();
-        png(width as u32, height as u32, &pixels)
+        let pixels: Vec<u8> = (0..width * height).flat_map(pixel).collect();
+        let mut file = Vec::new();
+        let mut encoder = Encoder::new(&mut file, width as u32, height as u32);
+        encoder.set_color(ColorType::Rgb);
+        let written = encoder
+            .write_header()
+            .and_then(|mut writer| writer.write_image_data(&pixels));
+        written.expect("a vector takes what is written, and the rows are as many as was said");
+        file
     }
 }
 

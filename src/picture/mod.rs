@@ -3,12 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | `draw` | triangles in perspective, lit, the nearer before the farther |
-//! | `png` | pixels as a file |
 //! | `colour` | a scale of colours |
 
 mod colour;
 mod draw;
-mod png;
 
 pub use colour::{Colour, viridis};
 pub use draw::{Painted, Picture, View};

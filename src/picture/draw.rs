@@ -8,10 +8,8 @@ use png::{ColorType, Encoder};
 const FINER: usize = 2;
 /// The eye is so many radii from the middle of what it sees.
 const EYE: f64 = 3.6;
-/// The share of a view that a sphere about the model takes.
+/// The share of a panel that a model takes.
 const FILLED: f64 = 0.96;
-/// What is nearer to the eye than the middle is seen larger: so much less may the middle fill.
-const NEARER: f64 = 0.9;
 /// Of the light: what comes from everywhere, and what from one side.
 const AMBIENT: f64 = 0.42;
 const DIRECT: f64 = 0.62;
@@ -20,13 +18,13 @@ const DIRECT: f64 = 0.62;
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// From where to look: a direction of unit length, not the vertical one.
-    pub from: DVec3,
+    from: DVec3,
     /// The middle of what is seen.
-    pub centre: DVec3,
+    centre: DVec3,
     /// Of a sphere about it.
-    pub radius: f64,
-    /// How many times larger it is seen than that the sphere would be seen whole.
-    pub zoom: f64,
+    radius: f64,
+    /// How large a radius in the middle is seen, in halves of a panel.
+    zoom: f64,
 }
 
 impl View {
@@ -39,13 +37,16 @@ impl View {
         let low = own.clone().reduce(DVec3::min).unwrap_or_default();
         let high = own.clone().reduce(DVec3::max).unwrap_or_default();
         let middle = (low + high) / 2.0;
-        let radius = own.map(|p| p.distance(middle)).fold(0.0, f64::max);
-        let half = (high - low) / 2.0;
+        let radii = own.clone().map(|p| p.distance(middle));
+        let radius = radii.fold(f64::MIN_POSITIVE, f64::max);
+        // What is nearer to the eye than the middle is seen larger.
+        let seen = own.map(|p| (p - middle) / radius);
+        let seen = seen.map(|p| p.x.abs().max(p.y.abs()) * EYE / (EYE - p.z));
         View {
             from,
             centre: turn.transpose() * middle,
             radius,
-            zoom: NEARER * radius / half.x.max(half.y).max(f64::MIN_POSITIVE),
+            zoom: FILLED / seen.fold(f64::MIN_POSITIVE, f64::max),
         }
     }
 }
@@ -189,13 +190,11 @@ struct Eye {
 
 impl Eye {
     fn new(view: &View, width: usize, height: usize) -> Eye {
-        // A sphere's outline is seen farther out than its radius.
-        let outline = EYE / (EYE * EYE - 1.0).sqrt();
         Eye {
             turn: turned_to(view.from),
             centre: view.centre,
-            radius: view.radius.max(f64::MIN_POSITIVE),
-            scale: view.zoom * FILLED * 0.5 * width.min(height) as f64 * EYE / outline / EYE,
+            radius: view.radius,
+            scale: view.zoom * 0.5 * width.min(height) as f64,
             middle: [width as f64 / 2.0, height as f64 / 2.0],
         }
     }
@@ -239,15 +238,17 @@ mod tests {
         let (red, blue) = (|_| [1.0, 0.0, 0.0], |_| [0.0, 0.0, 1.0]);
         let (front, back) = (painted(&near, &red), painted(&far, &blue));
         for order in [[&front, &back], [&back, &front]] {
-            let mut picture = Picture::new(20, 10);
-            order
-                .into_iter()
-                .for_each(|painted| picture.draw((1, 2), &view, painted));
+            let mut picture = Picture::new(200, 100);
+            for painted in order {
+                picture.draw((1, 2), &view, painted);
+            }
             let middle = picture.height / 2 * picture.width;
             let [r, _, b] = picture.pixels[middle + picture.width * 3 / 4];
             assert!(r > 0.5 && b == 0.0, "{r} {b}");
             let left = picture.pixels[middle + picture.width / 4];
             assert_eq!(left, [1.0; 3], "it is drawn into the other panel");
+            let edge = &picture.pixels[..picture.width];
+            assert!(edge.iter().all(|own| *own == [1.0; 3]), "it is cut off");
         }
     }
 }

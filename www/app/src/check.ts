@@ -205,7 +205,7 @@ export class Check extends View<CheckStage> {
       [`${model.name}, compared with ${given.kind === "record" ? "the record" : "the original"} ${given.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}.`],
       answers(answer, given),
       ...(isMark(answer) ? [h("p", { class: "hint" }, PROVES_COMPARED), details("In numbers", figures)] : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures)]),
-      ...(answer.overlay ? [h("p", { class: "hint" }, "The picture beside this shows the suspect where it lies on the original: move the line between them, see how far they are apart, and which places speak for your mark. That last map follows your key: keep it to yourself.")] : []),
+      ...(answer.overlay ? [h("p", { class: "hint" }, "The viewer shows the suspect where it lies on the original: move the line between them, see how far they are apart, and which places speak for your mark. That last map follows your key: keep it to yourself.")] : []),
       actions(
         button("Save report (HTML)", () => save(renamed(model.name, "report.html"), answer.statement, "text/html")),
         button("Save report (JSON)", async () => saveJson(renamed(model.name, "report.json"), await comparisonReport(model.name, sha256, given, expected, answer))),

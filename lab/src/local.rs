@@ -82,7 +82,7 @@ pub fn tables(
          | model | vertices | SOLID alone | beside | RING alone | beside | LOCAL | RMS, % | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for model in &marked {
-        let [alone, beside] = [&model.without, &model.with].map(|read| ln_p_by(read));
+        let [alone, beside] = [&model.without, &model.with].map(ln_p_by);
         let line = format!(
             "| {} | {} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.3} | {:.1} |",
             model.name,

@@ -82,9 +82,8 @@ pub fn tables(
          | model | vertices | SOLID alone | beside | RING alone | beside | LOCAL | RMS, % | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for model in &marked {
-        let [alone, beside] = [&model.without, &model.with].map(|read| ln_p_by(read));
-        let _ = writeln!(
-            text,
+        let [alone, beside] = [&model.without, &model.with].map(ln_p_by);
+        let line = format!(
             "| {} | {} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.3} | {:.1} |",
             model.name,
             model.mesh.positions.len(),
@@ -96,6 +95,8 @@ pub fn tables(
             100.0 * model.rms_rel,
             model.seconds
         );
+        let _ = writeln!(text, "{line}");
+        eprintln!("{line}");
     }
     let names = marked.iter().map(|model| model.name.as_str());
     let _ = writeln!(

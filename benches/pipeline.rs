@@ -58,9 +58,9 @@ fn pipeline(criterion: &mut Criterion) {
             )
         })
     });
+    let (plan, _) = prepare(&host, &key, &options).expect("a plan");
+    let mut numbers = 1..;
     group.bench_function("stamp a copy", |b| {
-        let (plan, _) = prepare(&host, &key, &options).expect("a plan");
-        let mut numbers = 1..;
         b.iter(|| {
             plan.stamp(numbers.next().expect("endless"))
                 .expect("a copy")

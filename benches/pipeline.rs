@@ -12,7 +12,7 @@ use meshmark::internals::mesh::{Admissible, Edges, shapes};
 use meshmark::internals::paper::{Ranking, rank};
 use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract, prepare};
+use meshmark::{EmbedOptions, Evidence, Files, Key, Model, Payload, embed, extract};
 
 /// 0.04 % of the diagonal.
 const RMS_REL: f64 = 0.0004;
@@ -58,14 +58,6 @@ fn pipeline(criterion: &mut Criterion) {
             )
         })
     });
-    let (plan, _) = prepare(&host, &key, &options).expect("a plan");
-    let mut numbers = 1..;
-    group.bench_function("stamp a copy", |b| {
-        b.iter(|| {
-            plan.stamp(numbers.next().expect("endless"))
-                .expect("a copy")
-        });
-    });
     group.bench_function("measure", |b| b.iter(|| Evidence::of_mesh(&mesh)));
     group.bench_function("extract, unmarked", |b| b.iter(|| extract(&evidence, &key)));
     group.bench_function("extract, marked", |b| {
@@ -104,6 +96,7 @@ fn stages(criterion: &mut Criterion) {
         admissible: &Admissible::default(),
         rms_rel: RMS_REL,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let mark = Mark {

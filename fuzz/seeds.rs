@@ -1,8 +1,12 @@
 //! Writes what the fuzzer starts from: `cargo run --manifest-path fuzz/Cargo.toml --bin seeds`, in the project's folder.
 
 #[allow(dead_code)] // a part of it is enough here
-#[path = "../tests/suite/support/mod.rs"]
-mod support;
+#[path = "../tests/suite/support"]
+mod support {
+    pub mod fixtures;
+    pub mod glb;
+    pub mod gltf_builder;
+}
 
 use meshmark::internals::carrier::{Measurement, ring, solid};
 use meshmark::internals::document::Document;

@@ -42,6 +42,7 @@ mod key;
 mod mesh;
 mod order;
 mod paper;
+mod picture;
 mod progress;
 mod random;
 mod scene;
@@ -61,12 +62,15 @@ pub use evidence::{Evidence, EvidenceError};
 pub use key::{Key, KeyError};
 pub use progress::{Cancelled, Progress, Stage};
 pub use scene::SceneError;
+#[cfg(feature = "local")]
+pub use watermark::detect_with_local;
 pub use watermark::{
     Advice, Buyer, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport,
-    Embedding, Error, Extraction, Finding, Forecast, FoundIn, Holds, Input, Inspection, Level,
-    Model, NoteEmbedding, NoteReading, NoteReport, NoteSize, Plan, PlanError, RecordError,
-    RecordOptions, Shape, StampReport, Stamped, StatedFile, Statement, Strength, Surface, Suspect,
-    Traced, Tracing, Unshown, Verdict, Witness, capacity, compare, compare_with_record, decompress,
+    Embedding, Error, Extraction, Finding, Forecast, FoundIn, Holds, Illustration, Input,
+    Inspection, Level, Model, NoteEmbedding, NoteReading, NoteReport, NoteSize, Overlay, Plan,
+    PlanError, RecordError, RecordOptions, Shape, Sheet, StampReport, Stamped, StatedFile,
+    Statement, Strength, Surface, Suspect, Traced, Tracing, Unshown, Verdict, Witness, capacity,
+    compare, compare_overlaid, compare_overlaid_with_record, compare_with_record, decompress,
     detect, embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
     prepare, read_note, record, trace, trace_evidence, verify,
 };

@@ -31,7 +31,7 @@ pub struct Embed {
     /// How far a vertex may go at most, in scene units: 0.00005 is 0.05 mm, where these are metres
     #[arg(long, value_name = "UNITS")]
     max_movement: Option<f64>,
-    /// Comma-separated
+    /// Comma-separated. `local` beside `solid` is found in pieces that were cut out and simplified or remeshed: `extract --local`
     #[arg(long, value_delimiter = ',', default_value = "solid,ring", value_parser = carrier)]
     carriers: Vec<Carrier>,
     /// Write NAME.meshmark.json beside the marked model too: a record of some tens of kilobytes, with which `extract --record` finds most of

@@ -2,26 +2,23 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::informed::Informed;
 use crate::owner::Owner;
 use crate::report::Report;
 use crate::statement::StatementArgument;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
-use meshmark::Finding;
-use std::path::PathBuf;
+use meshmark::{Finding, Illustration};
 
 /// Read the mark of a key from a model, or from measured evidence
 #[derive(Args)]
 pub struct Extract {
     #[command(flatten)]
     suspect: Suspect,
-    /// The model as it was before it was marked: with it a copy is found that has lost what INPUT alone is read by. It has to be older than
-    /// the key's use on it, or the answer proves nothing to others
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "report"])]
-    original: Option<PathBuf>,
-    /// What `embed --record` wrote, in the stead of the original
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["evidence", "original", "report"])]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    informed: Informed,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -34,19 +31,27 @@ impl Extract {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let key = self.owner.key()?;
-        if let Some(original) = &self.original {
-            let comparison = self.suspect.compare(original, &key, &mut clock)?;
-            return self.telling.of_comparison(comparison, clock);
+        let repeated = format!(
+            "meshmark extract {}{}",
+            self.suspect.arguments(),
+            self.local.argument()
+        );
+        let suspect = ("Suspect", self.suspect.path());
+        if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
+            let picture = compared.overlay.as_ref();
+            let picture = picture.filter(|_| self.statement.is_wanted());
+            let picture = picture.map(Illustration::of);
+            let finding = Finding::Comparison(&compared.comparison, picture.as_ref());
+            let looked_at = [suspect, (compared.role, compared.path)];
+            let repeated = format!("{repeated} {}", compared.argument);
+            self.statement
+                .write(finding, &looked_at, &key, &self.owner, &repeated)?;
+            return self.telling.of_comparison(compared.comparison, None, clock);
         }
-        if let Some(record) = &self.record {
-            let comparison = self.suspect.compare_with_record(record, &key, &mut clock)?;
-            return self.telling.of_comparison(comparison, clock);
-        }
-        let extraction = self.suspect.examine(&key, None, &mut clock)?;
-        let repeated = format!("meshmark extract {}", self.suspect.arguments());
+        let extraction = self.suspect.examine(&key, None, self.local, &mut clock)?;
         let finding = Finding::Reading(&extraction);
         self.statement
-            .write(finding, self.suspect.path(), &key, &self.owner, &repeated)?;
+            .write(finding, &[suspect], &key, &self.owner, &repeated)?;
         self.telling.of(extraction, clock)
     }
 }

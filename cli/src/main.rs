@@ -14,6 +14,7 @@ mod extract;
 mod failure;
 mod file;
 mod format;
+mod informed;
 mod inspect;
 mod ledger;
 mod measure;

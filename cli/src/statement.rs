@@ -17,17 +17,20 @@ pub struct StatementArgument {
     /// What the report says as its date, in your words
     #[arg(long, requires = "report")]
     date: Option<String>,
-    /// A file that the report names as the original
-    #[arg(long, value_name = "FILE", requires = "report")]
-    report_original: Option<PathBuf>,
 }
 
 impl StatementArgument {
-    /// Writes the statement, where one is asked for. `repeated` is the command that repeats it, without the owner.
+    /// Whether one is asked for.
+    pub fn is_wanted(&self) -> bool {
+        self.report.is_some()
+    }
+
+    /// Writes the statement, where one is asked for. `looked_at` are files by what they are to the reader, the suspect first; `repeated` is the
+    /// command that repeats it, without the owner.
     pub fn write(
         &self,
         finding: Finding,
-        input: &Path,
+        looked_at: &[(&str, &Path)],
         key: &Key,
         owner: &Owner,
         repeated: &str,
@@ -35,18 +38,12 @@ impl StatementArgument {
         let Some(path) = &self.report else {
             return Ok(());
         };
-        let mut looked_at = vec![("Suspect", input)];
-        looked_at.extend(
-            self.report_original
-                .iter()
-                .map(|path| ("Original", path.as_path())),
-        );
         let mut files = Vec::new();
         for (role, path) in looked_at {
             let bytes = load(path)?;
             let name = path.file_name().unwrap_or_default();
             files.push(StatedFile {
-                role: role.to_owned(),
+                role: (*role).to_owned(),
                 name: name.to_string_lossy().into_owned(),
                 bytes: bytes.len() as u64,
                 sha256: sha256(&bytes),

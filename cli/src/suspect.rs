@@ -2,12 +2,12 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::file::{load, load_text, open, open_suspect};
+use crate::file::{Found, load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, compare, compare_with_record,
-    detect, extract, measure, trace, trace_evidence, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, Verdict, detect,
+    detect_with_local, extract, measure, trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -27,14 +27,16 @@ impl Suspect {
         &self,
         key: &Key,
         expected: Option<Payload>,
+        local: LocalArgument,
         clock: &mut Clock,
     ) -> Result<Extraction, Failure> {
         if !self.evidence {
-            return Ok(detect(
-                open_suspect(&self.input)?.suspect(clock),
-                key,
-                expected,
-            )?);
+            let opened = open_suspect(&self.input)?;
+            let suspect = opened.suspect(clock);
+            return Ok(match local.local {
+                true => detect_with_local(suspect, key, expected)?,
+                false => detect(suspect, key, expected)?,
+            });
         }
         let evidence = self.stored()?;
         clock.start("test");
@@ -44,28 +46,9 @@ impl Suspect {
         })
     }
 
-    /// Reads a model with its original at hand.
-    pub fn compare(
-        &self,
-        original: &Path,
-        key: &Key,
-        clock: &mut Clock,
-    ) -> Result<Comparison, Failure> {
-        let original = open(original)?;
-        let suspect = open_suspect(&self.input)?;
-        Ok(compare(suspect.suspect(clock), original.unwatched(), key)?)
-    }
-
-    /// Reads a model with the record of marking it.
-    pub fn compare_with_record(
-        &self,
-        record: &Path,
-        key: &Key,
-        clock: &mut Clock,
-    ) -> Result<Comparison, Failure> {
-        let record = load_text(record)?;
-        let suspect = open_suspect(&self.input)?;
-        Ok(compare_with_record(suspect.suspect(clock), &record, key)?)
+    /// The model, as it was found on disk.
+    pub fn found(&self) -> Result<Found, Failure> {
+        open_suspect(&self.input)
     }
 
     /// Says whose copies a model, or what was measured of one, was made of.
@@ -104,6 +87,21 @@ impl Suspect {
     }
 }
 
+/// Whether LOCAL is looked for.
+#[derive(Args, Clone, Copy)]
+pub struct LocalArgument {
+    /// Look for what LOCAL marked too, which a piece still holds that was cut out, and then simplified or remeshed. It takes seconds
+    #[arg(long, conflicts_with = "evidence")]
+    local: bool,
+}
+
+impl LocalArgument {
+    /// What somebody has to say on the command line to read the same.
+    pub fn argument(self) -> &'static str {
+        if self.local { " --local" } else { "" }
+    }
+}
+
 /// What is told where nothing is found.
 #[derive(Args)]
 pub struct Telling {
@@ -122,9 +120,18 @@ impl Telling {
         Report::judged(&told, verdict, clock)
     }
 
-    /// The same of a reading with the original.
-    pub fn of_comparison(&self, comparison: Comparison, clock: Clock) -> Result<Report, Failure> {
-        let verdict = comparison.verdict;
+    /// The same of a reading with the original; where a payload was expected, another one is not what was looked for.
+    pub fn of_comparison(
+        &self,
+        comparison: Comparison,
+        expected: Option<Payload>,
+        clock: Clock,
+    ) -> Result<Report, Failure> {
+        let is_it = |it: Payload| comparison.number == Some(it.number());
+        let verdict = match expected.is_none_or(is_it) {
+            true => comparison.verdict,
+            false => Verdict::None,
+        };
         let told = match self.details {
             true => comparison.with_details(),
             false => comparison,

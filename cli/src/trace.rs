@@ -55,7 +55,7 @@ impl Trace {
         );
         self.statement.write(
             Finding::Tracing(&tracing, &named),
-            self.suspect.path(),
+            &[("Suspect", self.suspect.path())],
             &key,
             &self.owner,
             &repeated,

@@ -2,10 +2,11 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::informed::Informed;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
-use crate::suspect::{Suspect, Telling};
+use crate::suspect::{LocalArgument, Suspect, Telling};
 use clap::Args;
 
 /// Test a model, or measured evidence, for an expected payload
@@ -13,6 +14,10 @@ use clap::Args;
 pub struct Verify {
     #[command(flatten)]
     suspect: Suspect,
+    #[command(flatten)]
+    informed: Informed,
+    #[command(flatten)]
+    local: LocalArgument,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -25,7 +30,15 @@ impl Verify {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let (payload, key) = (self.payload.read()?, self.owner.key()?);
-        let extraction = self.suspect.examine(&key, Some(payload), &mut clock)?;
+        // All payloads are charged here, as if none had been expected.
+        if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
+            return self
+                .telling
+                .of_comparison(compared.comparison, Some(payload), clock);
+        }
+        let extraction = self
+            .suspect
+            .examine(&key, Some(payload), self.local, &mut clock)?;
         self.telling.of(extraction, clock)
     }
 }

@@ -147,6 +147,69 @@ fn cli_embeds_and_extracts() {
     assert_eq!(report.get("carriers"), None);
 }
 
+/// A piece that was cut out and simplified is found by LOCAL, where it is looked for.
+#[test]
+fn cli_finds_a_piece_by_local() {
+    let here = Folder::new("local");
+    let part = meshmark::internals::mesh::shapes::cad_part();
+    fs::write(
+        here.path("part.glb"),
+        meshmark::internals::scene::to_glb(&part),
+    )
+    .unwrap();
+    let (code, report, _) = here.run(&format!(
+        "embed part.glb marked.glb {ADA} --tag ADA-1 --strength strong --carriers solid,ring,local"
+    ));
+    assert_eq!((code, &report["readBack"]["tag"]), (0, &"ADA-1".into()));
+    let steps = [
+        "--step",
+        "crop 50 %",
+        "--step",
+        "simplify 50",
+        "--seed",
+        "3",
+    ];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshmark"));
+    command
+        .args(["attack", "marked.glb", "piece.glb"])
+        .args(steps);
+    assert!(
+        command
+            .current_dir(&here.0)
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+
+    let (code, report, _) = here.run(&format!("extract piece.glb {ADA}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+    for command in ["extract", "verify --tag ADA-1"] {
+        let (code, report, _) = here.run(&format!("{command} piece.glb --local {ADA}"));
+        assert_eq!(
+            (code, &report["verdict"]),
+            (0, &"present".into()),
+            "{command}"
+        );
+        let reason = report["reason"].as_str().unwrap();
+        assert!(reason.starts_with("Found by LOCAL, in "), "{reason}");
+        assert_eq!(report["carriers"][2]["name"], "local");
+    }
+    let other = "--owner Ada --passphrase-file other.txt";
+    let (code, report, _) = here.run(&format!("extract piece.glb --local {other}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+
+    let (code, ..) = here.run(&format!("extract piece.glb --local --evidence {ADA}"));
+    assert_eq!(code, 2);
+    let (code, _, words) = here.run(&format!(
+        "embed part.glb x.glb {ADA} --tag ADA-1 --carriers local"
+    ));
+    assert!(
+        code == 2 && words.contains("name the carrier solid"),
+        "{words}"
+    );
+}
+
 #[test]
 fn cli_measures_once_and_reads_the_evidence() {
     let here = Folder::new("evidence");
@@ -507,6 +570,30 @@ fn cli_reads_with_the_original_and_with_the_record() {
         assert_eq!(answer["tag"], "ADA-1", "{with}");
         assert_eq!(answer["shape"], "same", "{with}");
         assert_eq!(answer["witness"], "surface", "{with}");
+        let verify = |tag: &str| format!("verify copy.glb {with} --tag {tag} {ADA}");
+        assert_eq!(folder.run(&verify("ADA-1")).0, 0, "{with}");
+        let (code, answer, _) = folder.run(&verify("ADA-2"));
+        assert_eq!((code, &answer["tag"]), (1, &json!("ADA-1")), "{with}");
+    }
+    for (with, role) in [
+        ("--original model.glb", "Original"),
+        ("--record marked.meshmark.json", "Record"),
+    ] {
+        let stated = format!("extract marked.glb {with} --report report.html {ADA}");
+        assert_eq!(folder.run(&stated).0, 0, "{with}");
+        let report = fs::read_to_string(folder.path("report.html")).unwrap();
+        for words in [
+            "Your mark was found.",
+            "The shape is the original",
+            "data:image/png;base64,",
+            "whoever holds the key can make an",
+            role,
+            with,
+        ] {
+            assert!(report.contains(words), "{with}: {words}");
+        }
+        let is_recorded = report.contains("what the record keeps of it");
+        assert_eq!(is_recorded, role == "Record");
     }
     let (code, answer, _) = folder.run(&format!("extract model.glb --original model.glb {ADA}"));
     assert_eq!((code, &answer["shape"]), (1, &json!("same")), "{answer}");
@@ -865,15 +952,13 @@ fn a_reading_is_stated_too() {
     let folder = Folder::new("statement");
     let (code, _, _) = folder.run(&format!("embed model.glb marked.glb --tag ADA-1 {ADA}"));
     assert_eq!(code, 0);
-    let extract =
-        format!("extract marked.glb --report report.html --report-original model.glb {ADA}");
+    let extract = format!("extract marked.glb --report report.html {ADA}");
     assert_eq!(folder.run(&extract).0, 0);
     let report = fs::read_to_string(folder.path("report.html")).unwrap();
     for words in [
         "Your mark was found.",
         "ADA-1",
         "marked.glb",
-        "model.glb",
         "less than 1 in 10^38",
     ] {
         assert!(report.contains(words), "{words}");

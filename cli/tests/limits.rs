@@ -3,12 +3,14 @@
 #![cfg(all(unix, not(target_arch = "wasm32")))]
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
-#[allow(dead_code)] // a part of it is enough here
-#[path = "../../tests/suite/support/gltf_builder.rs"]
-mod gltf_builder;
+#[path = "../../tests/suite/support"]
+mod support {
+    pub mod glb;
+    #[allow(dead_code)] // a part of it is enough here
+    pub mod gltf_builder;
+}
 
 use glam::DVec3;
-use gltf_builder::{Component, GltfBuilder, Layout, Packing, primitive};
 use meshmark::internals::document::MAX_UNBACKED;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::to_glb;
@@ -16,6 +18,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use support::gltf_builder::{Component, GltfBuilder, Layout, Packing, primitive};
 
 /// Address space of a run, in KiB: 1 GiB. Without limits the files below take from 2 to 10 GiB.
 const MEMORY: u32 = 1 << 20;

@@ -29,6 +29,8 @@ pub fn write(models: Vec<Model>, folder: &Path) -> Result<String, String> {
         key.commitment()
     );
     for model in models.iter().filter(|model| model.size <= Size::Usual) {
+        let host = format!("{}-host.glb", model.name.replace(' ', "-"));
+        std::fs::write(folder.join(host), &model.bytes).map_err(said)?;
         for (name, strength) in STRENGTHS {
             let number =
                 getrandom::u64().map_err(|error| error.to_string())? >> (64 - Payload::BITS);

@@ -1,5 +1,5 @@
-//! LOCAL alone: pieces that were cut out and then changed, at random planes, with keys drawn for the table; and wrong keys on suspects that are
-//! made to break its bound.
+//! LOCAL beside SOLID and RING: what it takes from them, and what is found with it in pieces that were cut out and then changed, at random
+//! planes, with keys drawn for the table; and wrong keys on suspects that are made to break its bound.
 
 use crate::models::{Class, Model, gathered};
 use crate::seed::Seed;
@@ -7,16 +7,13 @@ use glam::DVec3;
 use meshmark::internals::attack::{
     crop, mirror, noise, quantize, remesh, resample, similarity, simplify, smooth_inside,
 };
-use meshmark::internals::carrier::Host;
-use meshmark::internals::carrier::local::{Embedded, Measurement, embed};
+use meshmark::internals::carrier::local::Measurement;
 use meshmark::internals::code::Codeword;
 use meshmark::internals::detection::{LN_P_FOUND, Statistic};
-use meshmark::internals::document::Document;
-use meshmark::internals::geometry::{Bounds, Leeway, diagonal};
+use meshmark::internals::geometry::diagonal;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::progress::ignore;
-use meshmark::internals::scene::Scene;
-use meshmark::{Files, Key, Strength};
+use meshmark::{Carrier, EmbedOptions, Extraction, Key, Strength, embed};
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::time::Instant;
@@ -25,8 +22,8 @@ use std::time::Instant;
 const CUTS: u64 = 3;
 /// Models have as many vertices at least.
 const FEWEST_VERTICES: usize = 2500;
-/// What a judge of three carriers would charge beside the carrier: three tests of each way, and the choice of the carrier.
-const LN_JUDGE: f64 = 2.1972245773362196; // ln 9
+/// What the judge charges LOCAL: it has a sixteenth of the probability.
+const LN_LOCAL: f64 = 2.772_588_722_239_781; // ln 16
 
 type Change = fn(&Mesh, u64) -> Mesh;
 
@@ -69,35 +66,33 @@ pub fn tables(
 ) -> Result<String, String> {
     models.retain(|model| model.class == Class::Plain);
     let mut text = format!(
-        "LOCAL alone, strength {:.4} % of the diagonal, seed {}. Three random planes for each model, then any similarity. Found is a bound \
-         of 1e-9 at most, all charges paid. Models as *found of 3*.\n\n",
+        "SOLID, LOCAL and RING together, strength {:.4} % of the diagonal, seed {}. Three random planes for each model, then any similarity. \
+         Found is a bound of 1e-9 at most, all charges paid.\n\n",
         100.0 * strength.rms_rel(),
         seed.number
     );
     let marked: Vec<Result<Option<Marked>, String>> = models
         .into_par_iter()
-        .map(|model| Marked::new(model, strength, seed))
+        .map(|model| Marked::new(&model, strength, seed))
         .collect();
-    let marked: Vec<Marked> = marked
-        .into_iter()
-        .collect::<Result<Vec<_>, _>>()?
-        .into_iter()
-        .flatten()
-        .collect();
-    let _ = writeln!(
-        text,
-        "| model | vertices | balls | exponent | RMS, % | s |\n|---|--:|--:|--:|--:|--:|"
+    let marked = marked.into_iter().filter_map(Result::transpose);
+    let marked: Vec<Marked> = marked.collect::<Result<_, _>>()?;
+    text.push_str(
+        "ln p as it is: of SOLID and of RING without LOCAL, and of all three together.\n\n\
+         | model | vertices | SOLID alone | beside | RING alone | beside | LOCAL | RMS, % | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for model in &marked {
-        let (balls, exponent) = model
-            .embedded
-            .as_ref()
-            .map_or((0, 0.0), |e| (e.balls.len(), e.exponent));
+        let [alone, beside] = [&model.without, &model.with].map(|read| ln_p_by(read));
         let _ = writeln!(
             text,
-            "| {} | {} | {balls} | {exponent:.0} | {:.3} | {:.1} |",
+            "| {} | {} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.3} | {:.1} |",
             model.name,
-            model.host.positions.len(),
+            model.mesh.positions.len(),
+            alone(Carrier::Solid),
+            beside(Carrier::Solid),
+            alone(Carrier::Ring),
+            beside(Carrier::Ring),
+            beside(Carrier::Local),
             100.0 * model.rms_rel,
             model.seconds
         );
@@ -105,7 +100,7 @@ pub fn tables(
     let names = marked.iter().map(|model| model.name.as_str());
     let _ = writeln!(
         text,
-        "\n| attack | {} | cells | models with two or more |\n|---|{}--:|--:|",
+        "\nFound by LOCAL, of three planes.\n\n| attack | {} | cells | models with two or more |\n|---|{}--:|--:|",
         names.collect::<Vec<_>>().join(" | "),
         "--:|".repeat(marked.len())
     );
@@ -113,23 +108,22 @@ pub fn tables(
         let found: Vec<usize> = marked
             .par_iter()
             .map(|model| {
-                let cell = |number| model.is_found(cut, change, seed.number(name, number));
-                (0..CUTS)
-                    .filter(|&number| cell(number + CUTS * row as u64))
-                    .count()
+                let is_found = |number| model.is_found(cut, change, seed.number(name, number));
+                let numbers = (0..CUTS).map(|number| number + CUTS * row as u64);
+                numbers.filter(|number| is_found(*number)).count()
             })
             .collect();
-        let cells: usize = found.iter().sum();
-        let models = found.iter().filter(|found| **found >= 2).count();
         let each: Vec<String> = found.iter().map(usize::to_string).collect();
-        let _ = writeln!(
-            text,
-            "| {name} | {} | {cells} of {} | {models} of {} |",
+        let line = format!(
+            "| {name} | {} | {} of {} | {} of {} |",
             each.join(" | "),
+            found.iter().sum::<usize>(),
             CUTS as usize * marked.len(),
-            marked.len()
+            found.iter().filter(|found| **found >= 2).count(),
+            marked.len(),
         );
-        eprintln!("{name} | {} | {cells} | {models}", each.join(" | "));
+        let _ = writeln!(text, "{line}");
+        eprintln!("{line}");
     }
     text.push_str(&wrong_keys(&marked, seed, num_keys));
     Ok(text)
@@ -138,65 +132,62 @@ pub fn tables(
 /// A model and its mark.
 struct Marked {
     name: String,
-    host: Mesh,
     mesh: Mesh,
     key: Key,
-    embedded: Option<Embedded>,
     rms_rel: f64,
     seconds: f64,
+    /// What is read of it as it is, marked without LOCAL and with it.
+    without: Extraction,
+    with: Extraction,
 }
 
 impl Marked {
     /// `None` for a model with few vertices.
-    fn new(model: Model, strength: Strength, seed: &Seed) -> Result<Option<Marked>, String> {
-        let document = Document::read(&model.bytes, &Files::new()).map_err(|e| e.to_string())?;
-        let scene = Scene::gather(&document).map_err(|e| e.to_string())?;
-        let host = gathered(&model.bytes)?;
-        if host.positions.len() < FEWEST_VERTICES {
+    fn new(model: &Model, strength: Strength, seed: &Seed) -> Result<Option<Marked>, String> {
+        if gathered(&model.bytes)?.positions.len() < FEWEST_VERTICES {
             return Ok(None);
         }
-        let leeway = Leeway::new(&scene.mesh, &scene.parts(), Bounds::STRONG);
-        let key = seed.key(&model.name, 0);
+        let (key, payload) = (seed.key(&model.name, 0), seed.payload(&model.name));
+        let options = EmbedOptions::default().with_strength(strength);
+        let with_all = options.clone().with_carriers(Carrier::ALL);
+        let embed = |options: &EmbedOptions| {
+            let embedded = embed(&model.bytes, payload, &key, options);
+            embedded.map_err(|error| format!("{}: {error}", model.name))
+        };
+        let without = embed(&options)?.report.read_back;
         let start = Instant::now();
-        let embedded = embed(
-            &Host {
-                mesh: &host,
-                leeway: &leeway,
-                admissible: &scene.admissible,
-                rms_rel: strength.rms_rel(),
-                hidden: strength.is_hidden(),
-                on_top: false,
-            },
-            &key,
-            &mut ignore,
-        );
-        let embedded = embedded.map_err(|error| error.to_string())?;
-        let mut mesh = host.clone();
-        if let Some(embedded) = &embedded {
-            mesh.displace(&embedded.displacement);
+        let embedded = embed(&with_all)?;
+        for warning in &embedded.report.warnings {
+            eprintln!("{}: {warning}", model.name);
         }
-        let square = |(a, b): (&DVec3, &DVec3)| a.distance_squared(*b);
-        let squares: f64 = mesh.positions.iter().zip(&host.positions).map(square).sum();
-        let rms = (squares / host.positions.len() as f64).sqrt();
         Ok(Some(Marked {
-            name: model.name,
-            rms_rel: rms / diagonal(&host.positions),
+            name: model.name.clone(),
+            mesh: gathered(&embedded.model)?,
+            rms_rel: embedded.report.rms_rel,
             seconds: start.elapsed().as_secs_f64(),
-            host,
-            mesh,
+            with: embedded.report.read_back,
+            without,
             key,
-            embedded,
         }))
     }
 
+    /// Whether LOCAL alone says that a piece is the owner's: what the judge hears beside that is not looked at.
     fn is_found(&self, cut: f64, change: Change, seed: u64) -> bool {
         let piece = match cut {
             0.0 => self.mesh.clone(),
             cut => crop(&self.mesh, cut, seed),
         };
         let suspect = similarity(&change(&piece, seed), seed);
-        let ln_p = ln_p(&Measurement::new(&suspect), &self.key) + LN_JUDGE;
-        ln_p <= LN_P_FOUND
+        ln_p(&Measurement::new(&suspect), &self.key) + LN_LOCAL <= LN_P_FOUND
+    }
+}
+
+/// What a carrier says in a reading: the bound, what it charges itself paid.
+fn ln_p_by(read: &Extraction) -> impl Fn(Carrier) -> f64 {
+    move |carrier| {
+        let mut carriers = read.details().carriers.iter();
+        let own = carriers.find(|own| own.name == carrier);
+        own.map_or(0.0, |own| own.ln_p)
     }
 }
 

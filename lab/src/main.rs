@@ -26,6 +26,7 @@ mod seed;
 mod study;
 mod surface;
 mod trace;
+mod vectors;
 mod wild;
 
 use clap::Parser;
@@ -37,6 +38,9 @@ use seed::Seed;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Options of the grid, which is what the lab measures where nothing else is asked for.
+const GRID: [&str; 3] = ["quick", "full", "real"];
 
 /// Measures what the mark survives, and writes docs/ROBUSTNESS.md.
 #[derive(Parser)]
@@ -55,7 +59,7 @@ struct Arguments {
     #[arg(long, requires = "real")]
     blender: bool,
     /// Goes on with a run that was interrupted.
-    #[arg(long, conflicts_with_all = ["seed", "false_positives", "study", "oracle"])]
+    #[arg(long, conflicts_with_all = ["seed", "instead"])]
     resume: bool,
     /// A folder of .glb and .obj files. Default: ../shared/models, where it exists.
     #[arg(long)]
@@ -64,35 +68,39 @@ struct Arguments {
     #[arg(long)]
     seed: Option<u64>,
     /// Instead of the grid: so many tests with keys that marked nothing; writes docs/FALSE_POSITIVES.md.
-    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real"])]
+    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
     false_positives: Option<u64>,
     /// Instead of the grid: the seed paper's study; writes docs/STUDY.md, and its plots in docs/study.
-    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives"])]
+    #[arg(long, group = "instead", conflicts_with_all = GRID)]
     study: bool,
     /// Instead of the grid: forgers who may ask a detector with so many keys, and what they need; prints a table.
-    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study"])]
+    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
     oracle: Option<u64>,
     /// Instead of the grid: every .glb and .gltf in a folder, marked, and after what people do to files; prints a table. With --real, what
     /// web developers' programs leave too.
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "false_positives", "study", "oracle"])]
+    #[arg(long, value_name = "FOLDER", group = "instead", conflicts_with_all = ["quick", "full"])]
     wild: Option<PathBuf>,
     /// Instead of the grid: plain models whose surface is written otherwise, or has more beside it that is not seen; prints a table.
-    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild"])]
+    #[arg(long, group = "instead", conflicts_with_all = GRID)]
     surface: bool,
     /// Instead of the grid: what people who have no key learn from marked plain models, and do to them; prints tables.
-    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    #[arg(long, group = "instead", conflicts_with_all = GRID)]
     adversary: bool,
     /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table.
-    #[arg(long, value_name = "STRENGTH", conflicts_with_all = ["full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = ["full", "real"])]
     informed: Option<String>,
     /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
-    #[arg(long, conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    #[arg(long, group = "instead", conflicts_with_all = GRID)]
     trace: bool,
     /// Instead of the grid: generated models in a new folder, marked with a key that is drawn for them, for outsiders to break.
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    #[arg(long, value_name = "FOLDER", group = "instead", conflicts_with_all = GRID)]
     challenge: Option<PathBuf>,
-    /// Instead of the grid: pieces of plain models that LOCAL alone marks, cut out and then changed, and so many wrong keys; prints tables.
-    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "full", "real", "false_positives", "study", "oracle", "wild", "surface"])]
+    /// Instead of the grid: the host and the marked model of docs/VECTORS.md, in a new folder.
+    #[arg(long, value_name = "FOLDER", group = "instead", conflicts_with_all = GRID)]
+    vectors: Option<PathBuf>,
+    /// Instead of the grid: pieces of plain models that all carriers mark, cut out and then changed, read by LOCAL; and so many wrong keys;
+    /// prints tables.
+    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
     local: Option<u64>,
     /// Of --wild and --local: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced")]
@@ -157,6 +165,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     }
     if let Some(folder) = &arguments.challenge {
         return challenge::write(models::generated().collect(), folder);
+    }
+    if let Some(folder) = &arguments.vectors {
+        return vectors::write(folder);
     }
     if arguments.adversary {
         let (models, _) = models::all(arguments.models.as_deref())?;

@@ -36,11 +36,22 @@ pub enum Carrier {
     Solid,
     /// In how vertices are connected: their offsets from their one-rings.
     Ring,
+    /// In the shape about salient places, which are still there in a piece that was cut out and remeshed. It is used where it is asked for,
+    /// beside SOLID, and holds no payload.
+    #[cfg(feature = "local")]
+    Local,
 }
 
 impl Carrier {
+    /// Every carrier, in the order of embedding: RING comes last, for it takes least.
+    #[cfg(feature = "local")]
+    pub const ALL: [Carrier; 3] = [Carrier::Solid, Carrier::Local, Carrier::Ring];
     /// Every carrier, in the order of embedding.
-    pub const ALL: [Carrier; 2] = [Carrier::Solid, Carrier::Ring];
+    #[cfg(not(feature = "local"))]
+    pub const ALL: [Carrier; 2] = Carrier::STANDARD;
+
+    /// Those that mark and are read unless others are asked for.
+    pub const STANDARD: [Carrier; 2] = [Carrier::Solid, Carrier::Ring];
 
     /// The same, in the order of measuring and of stored evidence: what takes little time comes first.
     pub(crate) const QUICKEST_FIRST: [Carrier; 2] = [Carrier::Ring, Carrier::Solid];
@@ -49,11 +60,17 @@ impl Carrier {
     /// meshes need no more, and on coarse ones more would drown what SOLID wrote.
     pub(crate) const SHARE_ON_TOP: f64 = 0.25;
 
-    /// The name that scripts and pages use: `solid` or `ring`.
+    /// The share of the RMS limit that SOLID and LOCAL take, each, where both are in a model: what they move is not alike, so together they
+    /// take the root of the sum of the squares, which is the whole.
+    pub(crate) const SHARE_BESIDE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+    /// The name that scripts and pages use: `solid`, `ring` or `local`.
     pub fn name(self) -> &'static str {
         match self {
             Carrier::Solid => "solid",
             Carrier::Ring => "ring",
+            #[cfg(feature = "local")]
+            Carrier::Local => "local",
         }
     }
 
@@ -70,9 +87,49 @@ impl Carrier {
         mark: &Mark,
         progress: &mut dyn Progress,
     ) -> Result<Embedded, CarrierError> {
+        self.embed_above(host, mark, &[], progress)
+    }
+
+    /// The same in a host where SOLID chose so: LOCAL leaves those windows as they are, nearly.
+    #[cfg_attr(not(feature = "local"), allow(unused_variables))] // LOCAL alone looks at that
+    pub(crate) fn embed_above(
+        self,
+        host: &Host,
+        mark: &Mark,
+        chosen: &[solid::Chosen],
+        progress: &mut dyn Progress,
+    ) -> Result<Embedded, CarrierError> {
         match self {
             Carrier::Solid => solid::embed(host, mark, progress),
             Carrier::Ring => ring::embed(host, mark, progress),
+            #[cfg(feature = "local")]
+            Carrier::Local => local::embed_above(host, mark.key, chosen, progress),
+        }
+    }
+
+    /// Whether a mesh has what it takes beside SOLID.
+    #[cfg_attr(not(feature = "local"), allow(unused_variables))] // LOCAL alone looks at that
+    pub(crate) fn is_beside_solid(self, mesh: &Mesh) -> bool {
+        match self {
+            Carrier::Solid | Carrier::Ring => false,
+            #[cfg(feature = "local")]
+            Carrier::Local => local::suits(mesh),
+        }
+    }
+
+    /// Whether it can say a payload; else it says whose a model is, and nothing else.
+    pub(crate) fn holds_payload(self) -> bool {
+        Carrier::STANDARD.contains(&self)
+    }
+
+    /// Its share in the probability of a false alarm (docs/SECURITY.md, 7). LOCAL has one whether it is read or not, and is compiled or not:
+    /// so it may be read after the others have said nothing.
+    pub(crate) fn share(self) -> f64 {
+        const LOCAL: f64 = 1.0 / 16.0;
+        if self.holds_payload() {
+            0.5 * (1.0 - LOCAL)
+        } else {
+            LOCAL
         }
     }
 
@@ -87,14 +144,8 @@ impl Carrier {
         match self {
             Carrier::Solid => Some(Prepared::Solid(solid::Prepared::new(host, key, chosen))),
             Carrier::Ring => ring::Prepared::new(host).ok().map(Prepared::Ring),
-        }
-    }
-
-    /// What a mesh shows without a key.
-    pub(crate) fn measure(self, mesh: &Mesh) -> Measurement {
-        match self {
-            Carrier::Solid => Measurement::Solid(solid::Measurement::new(mesh)),
-            Carrier::Ring => Measurement::Ring(ring::Measurement::new(mesh)),
+            #[cfg(feature = "local")]
+            Carrier::Local => None,
         }
     }
 
@@ -110,6 +161,8 @@ impl Carrier {
         match self {
             Carrier::Solid => solid::Suspect::new(mesh).read_until(key, is_settled, progress),
             Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
+            #[cfg(feature = "local")]
+            Carrier::Local => local::Measurement::new(mesh).read(key, progress),
         }
     }
 
@@ -123,6 +176,8 @@ impl Carrier {
         match self {
             Carrier::Solid => solid::Suspect::as_it_is(mesh).read_until(key, &|_| true, progress),
             Carrier::Ring => Ok(ring::Measurement::new(mesh).read(key)),
+            #[cfg(feature = "local")]
+            Carrier::Local => local::Measurement::new(mesh).read(key, progress),
         }
     }
 
@@ -146,6 +201,8 @@ impl Carrier {
                 suspect.read_until(key, is_settled, progress)
             }
             Carrier::Ring => Ok(ring::Measurement::new(copy).read(key)),
+            #[cfg(feature = "local")]
+            Carrier::Local => local::Measurement::new(copy).read(key, progress),
         }
     }
 
@@ -168,6 +225,9 @@ impl Carrier {
             Carrier::Solid => 0.0,
             // A key owns a share of them, and n of equal weight that agree give ln p = -n.
             Carrier::Ring => num_addresses as f64 / ring::SHARE as f64,
+            // It speaks where it is found: that a suspect has few places is no reason to say that it cannot be checked.
+            #[cfg(feature = "local")]
+            Carrier::Local => 0.0,
         }
     }
 
@@ -176,25 +236,53 @@ impl Carrier {
     pub(crate) fn can_be_carried_over(self) -> bool {
         self == Carrier::Ring
     }
+}
+
+/// A carrier whose measurement evidence keeps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stored {
+    Ring,
+    Solid,
+}
+
+impl Stored {
+    /// In the order of [`Carrier::QUICKEST_FIRST`].
+    pub(crate) const ALL: [Stored; 2] = [Stored::Ring, Stored::Solid];
+
+    /// The carrier.
+    pub(crate) fn carrier(self) -> Carrier {
+        match self {
+            Stored::Solid => Carrier::Solid,
+            Stored::Ring => Carrier::Ring,
+        }
+    }
+
+    /// What a mesh shows without a key.
+    pub(crate) fn measure(self, mesh: &Mesh) -> Measurement {
+        match self {
+            Stored::Solid => Measurement::Solid(solid::Measurement::new(mesh)),
+            Stored::Ring => Measurement::Ring(ring::Measurement::new(mesh)),
+        }
+    }
 
     /// The tag of its section in stored evidence.
     pub(crate) fn section(self) -> &'static [u8; 4] {
         match self {
-            Carrier::Solid => b"SOLI",
-            Carrier::Ring => b"RING",
+            Stored::Solid => b"SOLI",
+            Stored::Ring => b"RING",
         }
     }
 
     /// A measurement from its bytes; of none, one that shows nothing.
     pub(crate) fn measurement_from(self, bytes: &[u8]) -> Result<Measurement, StoredError> {
         Ok(match self {
-            Carrier::Solid => Measurement::Solid(solid::Measurement::from_bytes(bytes)?),
-            Carrier::Ring => Measurement::Ring(ring::Measurement::from_bytes(bytes)?),
+            Stored::Solid => Measurement::Solid(solid::Measurement::from_bytes(bytes)?),
+            Stored::Ring => Measurement::Ring(ring::Measurement::from_bytes(bytes)?),
         })
     }
 }
 
-/// What a carrier measures of a mesh.
+/// What a carrier measures of a mesh, and evidence keeps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measurement {
     /// SOLID's.
@@ -258,6 +346,8 @@ pub struct Host<'a> {
     pub admissible: &'a Admissible,
     /// Limit of the RMS displacement over all vertices, as a fraction of the diagonal.
     pub rms_rel: f64,
+    /// The share of that limit, and of what stays unseen, that this carrier may take: 1 where no other comes beside it.
+    pub share: f64,
     /// Whether to stay below that limit where the surface is too smooth to hide it.
     pub hidden: bool,
     /// Whether another carrier's mark is in the mesh already.

@@ -82,11 +82,18 @@ pub fn ln_p_of_errors(terms: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     if simple > -1.0 {
         return simple;
     }
-    let at = |l: f64| {
-        let parts = terms.clone().map(|(m, _)| ln_sinhc(0.5 * l * m.abs()));
-        parts.sum::<f64>() - l * sum
-    };
-    // Every l gives a bound; the function is convex in it.
+    simple.min(tilted(terms.clone(), best_tilt(terms, sum, square), sum))
+}
+
+/// Chernoff's bound at an l: every one gives a bound.
+fn tilted(terms: impl Iterator<Item = (f64, f64)>, l: f64, sum: f64) -> f64 {
+    let parts = terms.map(|(m, _)| ln_sinhc(0.5 * l * m.abs()));
+    parts.sum::<f64>() - l * sum
+}
+
+/// The l that gives about the least bound, which is convex in it.
+fn best_tilt(terms: impl Iterator<Item = (f64, f64)> + Clone, sum: f64, square: f64) -> f64 {
+    let at = |l: f64| tilted(terms.clone(), l, sum);
     let (mut low, mut high) = (12.0 * sum / square, 1200.0 * sum / square);
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     for _ in 0..24 {
@@ -97,7 +104,25 @@ pub fn ln_p_of_errors(terms: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
             low = a;
         }
     }
-    simple.min(at(0.5 * (low + high)))
+    0.5 * (low + high)
+}
+
+/// What each pair adds to the exponent of [`ln_p_of_errors`], before charges: above 0 where it speaks for the errors' being no chance.
+/// Nothing where the pairs together say nothing.
+pub fn exponents_of_errors(terms: &[(f64, f64)]) -> Vec<f64> {
+    let usable = |&(m, e): &(f64, f64)| match m.is_finite() && e.is_finite() {
+        true => (m, e.clamp(-0.5, 0.5)),
+        false => (0.0, 0.0),
+    };
+    let terms = terms.iter().map(usable);
+    let sum: f64 = terms.clone().map(|(m, e)| m * e).sum();
+    let square: f64 = terms.clone().map(|(m, _)| m * m).sum();
+    if !(sum > 0.0 && square.is_normal()) {
+        return vec![0.0; terms.len()];
+    }
+    let l = best_tilt(terms.clone(), sum, square);
+    let exponent = |(m, e): (f64, f64)| l * m * e - ln_sinhc(0.5 * l * m.abs());
+    terms.map(exponent).collect()
 }
 
 /// `ln(sinh(x) / x)` for x that is not negative.

@@ -3,7 +3,7 @@
 //! Stored form (docs/FORMAT.md): `MMEV`, a version of 2 bytes, then one section a carrier: a tag of 4 bytes, the length of
 //! its content in 4 bytes, the content. All integers little-endian.
 
-use crate::carrier::{Carrier, Measurement, StoredError};
+use crate::carrier::{Carrier, Measurement, Stored, StoredError};
 use crate::mesh::Mesh;
 
 const MAGIC: &[u8; 4] = b"MMEV";
@@ -53,7 +53,7 @@ impl EvidenceError {
 /// A key-free measurement of a suspect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
-    /// One of each carrier, in the order of [`Carrier::QUICKEST_FIRST`].
+    /// One of each carrier that it keeps, in the order of [`Stored::ALL`].
     measurements: [Measurement; 2],
 }
 
@@ -62,11 +62,11 @@ impl Evidence {
     #[doc(hidden)]
     pub fn of_mesh(mesh: &Mesh) -> Evidence {
         Evidence {
-            measurements: Carrier::QUICKEST_FIRST.map(|carrier| carrier.measure(mesh)),
+            measurements: Stored::ALL.map(|stored| stored.measure(mesh)),
         }
     }
 
-    /// What a carrier measured.
+    /// What a carrier measured, of [`Carrier::STANDARD`].
     #[doc(hidden)]
     pub fn measurement(&self, carrier: Carrier) -> &Measurement {
         let is_its = |measurement: &&Measurement| measurement.carrier() == carrier;
@@ -77,11 +77,11 @@ impl Evidence {
     /// The evidence as bytes: docs/FORMAT.md.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = [MAGIC.as_slice(), &VERSION.to_le_bytes()].concat();
-        for measurement in &self.measurements {
+        for (measurement, stored) in self.measurements.iter().zip(Stored::ALL) {
             let content = measurement.to_bytes();
             let length =
                 u32::try_from(content.len()).expect("some tens of bytes for each of 2^24 vertices");
-            let tag = measurement.carrier().section().as_slice();
+            let tag = stored.section().as_slice();
             bytes.extend([tag, &length.to_le_bytes(), &content].concat());
         }
         bytes
@@ -102,10 +102,10 @@ impl Evidence {
         }
         let mut rest = bytes;
         let mut measurements = Vec::new();
-        for carrier in Carrier::QUICKEST_FIRST {
+        for stored in Stored::ALL {
             let content;
-            (content, rest) = section(rest, carrier.section()).ok_or(EvidenceError::Damaged)?;
-            measurements.push(carrier.measurement_from(content)?);
+            (content, rest) = section(rest, stored.section()).ok_or(EvidenceError::Damaged)?;
+            measurements.push(stored.measurement_from(content)?);
         }
         match measurements.try_into() {
             Ok(measurements) if rest.is_empty() => Ok(Evidence { measurements }),
@@ -119,16 +119,17 @@ impl Evidence {
 impl FromIterator<Measurement> for Evidence {
     fn from_iter<I: IntoIterator<Item = Measurement>>(measurements: I) -> Evidence {
         let mut given: Vec<Measurement> = measurements.into_iter().collect();
-        let take = |carrier: Carrier| {
-            let place = given.iter().position(|m| m.carrier() == carrier);
+        let take = |stored: Stored| {
+            let is_its = |measurement: &Measurement| measurement.carrier() == stored.carrier();
+            let place = given.iter().position(is_its);
             let given = place.map(|place| given.swap_remove(place));
             given.unwrap_or_else(|| {
-                let nothing = carrier.measurement_from(&[]);
+                let nothing = stored.measurement_from(&[]);
                 nothing.expect("no bytes are a measurement that shows nothing")
             })
         };
         Evidence {
-            measurements: Carrier::QUICKEST_FIRST.map(take),
+            measurements: Stored::ALL.map(take),
         }
     }
 }

@@ -67,4 +67,4 @@ pub use scatter::{Point, scattered};
 pub use seams::{Seams, seams};
 pub use similarity::registered;
 pub use strays::without_strays;
-pub use surface::{Nearest, Surface};
+pub use surface::{Nearest, Surface, open_sides};

@@ -6,7 +6,7 @@
 use super::near::Near;
 use super::registration::Original;
 use super::scatter::{Point, scattered};
-use super::{Motion, Surface, vertex_normals};
+use super::{Motion, Surface, open_sides, vertex_normals};
 use crate::mesh::{Edges, Mesh};
 use crate::random::Random;
 use glam::DVec3;
@@ -123,7 +123,7 @@ impl<'a> Shown<'a> {
     ) -> Option<Shown<'a>> {
         let moved = motion.of_mesh(suspect);
         let surface = Surface::new(&moved);
-        let open = open_edges(&moved);
+        let open = open_sides(&moved);
         let chords = Chords::of(original, views, &moved);
         let d = original.diagonal;
         let feet = views.points.iter().zip(0u32..).filter_map(|(point, name)| {
@@ -131,9 +131,7 @@ impl<'a> Shown<'a> {
             if nearest.distance > FARTHEST * d {
                 return None;
             }
-            let on_edge = |side: usize| nearest.weights[(side + 2) % 3] <= 0.0;
-            let open = open[nearest.triangle as usize];
-            if (0..3).any(|side| open[side] && on_edge(side)) {
+            if nearest.is_at_boundary(&open) {
                 return None;
             }
             let [a, b, c] = moved.corners(moved.triangles[nearest.triangle as usize]);
@@ -271,16 +269,6 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
         true => 0.0,
         false => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
     }
-}
-
-/// For each triangle, which of its sides have no other.
-fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
-    let edges = Edges::new(mesh);
-    let mut open: Vec<(u32, u32)> = edges.boundary(&mesh.triangles).collect();
-    open.sort_unstable();
-    let is_open = |a: u32, b: u32| open.binary_search(&(a, b)).is_ok();
-    let sides = |&[a, b, c]: &[u32; 3]| [is_open(a, b), is_open(b, c), is_open(c, a)];
-    mesh.triangles.iter().map(sides).collect()
 }
 
 /// How far the chords of a suspect's triangles lie beneath the surface that they stand for, by the original's normals at their corners.

@@ -1,6 +1,6 @@
 //! The nearest point of a surface.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use glam::DVec3;
 
 /// Triangles in a leaf.
@@ -40,6 +40,24 @@ pub struct Nearest {
     pub triangle: u32,
     /// Its barycentric coordinates there: one is 0 on an edge, two at a corner.
     pub weights: [f64; 3],
+}
+
+impl Nearest {
+    /// Whether it is on a side of its triangle that has no other, as [`open_sides`] tells them.
+    pub fn is_at_boundary(&self, open: &[[bool; 3]]) -> bool {
+        let open = open[self.triangle as usize];
+        (0..3).any(|side| open[side] && self.weights[(side + 2) % 3] <= 0.0)
+    }
+}
+
+/// For each triangle, which of its sides, from its first corner on, have no other triangle.
+pub fn open_sides(mesh: &Mesh) -> Vec<[bool; 3]> {
+    let edges = Edges::new(mesh);
+    let mut open: Vec<(u32, u32)> = edges.boundary(&mesh.triangles).collect();
+    open.sort_unstable();
+    let is_open = |a: u32, b: u32| open.binary_search(&(a, b)).is_ok();
+    let sides = |&[a, b, c]: &[u32; 3]| [is_open(a, b), is_open(b, c), is_open(c, a)];
+    mesh.triangles.iter().map(sides).collect()
 }
 
 impl<'a> Surface<'a> {

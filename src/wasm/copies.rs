@@ -2,12 +2,11 @@
 
 use super::marks::{embed_options_from, evidence_from, key_from, model_to, surface_from};
 use super::options::Options;
-use super::{argument, encoded, set, thrown};
+use super::statement::stated;
+use super::{encoded, set, thrown};
 use crate::watermark::{self, Error};
-use crate::{
-    Extraction, Finding, Key, Model, Payload, Plan, StatedFile, Statement, Surface, Tracing,
-};
-use js_sys::{Array, Object, Reflect, Uint8Array};
+use crate::{Extraction, Finding, Key, Model, Payload, Plan, Surface, Tracing};
+use js_sys::{Object, Reflect, Uint8Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 
@@ -144,42 +143,6 @@ fn told(tracing: &Tracing, key: &Key, options: &Options) -> Result<JsValue, JsVa
         set(object, "statement", &html.into())?;
     }
     Ok(result)
-}
-
-/// A statement as HTML.
-fn stated(finding: Finding, key: &Key, asked: &JsValue) -> Result<String, JsValue> {
-    let get = |object: &JsValue, name: &str| Reflect::get(object, &name.into());
-    let words = |object: &JsValue, name: &str| -> Result<Option<String>, JsValue> {
-        Ok(get(object, name)?.as_string())
-    };
-    let object = asked
-        .dyn_ref::<Object>()
-        .ok_or_else(|| argument("statement is an object"))?;
-    let mut files = Vec::new();
-    let given = get(object, "files")?;
-    for file in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {
-        files.push(StatedFile {
-            role: words(&file, "role")?.unwrap_or_default(),
-            name: words(&file, "name")?.unwrap_or_default(),
-            bytes: get(&file, "bytes")?.as_f64().unwrap_or_default() as u64,
-            sha256: words(&file, "sha256")?.unwrap_or_default(),
-        });
-    }
-    let given = get(object, "commands")?;
-    let mut commands = Vec::new();
-    for line in given.dyn_ref::<Array>().unwrap_or(&Array::new()).iter() {
-        commands.extend(line.as_string());
-    }
-    let (owner, date) = (words(object, "owner")?, words(object, "date")?);
-    let statement = Statement {
-        finding,
-        owner: owner.as_deref(),
-        commitment: &key.commitment(),
-        files: &files,
-        date: date.as_deref(),
-        commands: &commands,
-    };
-    Ok(statement.html())
 }
 
 fn numbers_from(numbers: &[f64]) -> Result<Vec<u64>, JsValue> {

@@ -7,14 +7,43 @@ export type Stage = "read" | "embed" | "write" | "measure" | "test" | "forecast"
 /** Called as work goes on; `fraction` (0 to 1) is of the stage, not of the whole. If it throws, the work ends with code `aborted`. */
 export type OnProgress = (stage: Stage, fraction: number) => void;
 
-/** Of a suspect that is no glTF. */
-export interface CompareMeshOptions {
-  /** What an original that is a `.gltf` names by URI. Default: none, which does for a `.glb`. */
-  originalFiles?: Files | undefined;
+/** A file that a statement is about. */
+export interface StatedFile {
+  /** What it is to the reader: "Suspect", "Original". */
+  role: string;
+  name: string;
+  bytes: number;
+  sha256: string;
+}
+
+/** What a statement says beside what was found. */
+export interface StatementOptions {
+  /** Whose key it is, as they call themselves. Default: not said. */
+  owner?: string | undefined;
+  /** When it was looked at, in your words. Default: not said. */
+  date?: string | undefined;
+  /** What was looked at, the suspect first. Default: none. */
+  files?: StatedFile[] | undefined;
+  /** Command lines that repeat it. Default: none. */
+  commands?: string[] | undefined;
+}
+
+/** Of every comparison. */
+export interface ComparingOptions {
   /** Whether `lnP` is told where nothing is found too. Default: false. It follows the key: for the key's owner. */
   details?: boolean | undefined;
+  /** Whether the suspect is laid on the original, to be looked at. Default: false. Its `evidence` follows the key: for the key's owner. */
+  overlay?: boolean | undefined;
+  /** Makes a statement of what was found, with a picture of the suspect laid on the original. Default: none is made. */
+  statement?: StatementOptions | undefined;
   /** Default: nobody is told. */
   onProgress?: OnProgress | undefined;
+}
+
+/** Of a suspect that is no glTF. */
+export interface CompareMeshOptions extends ComparingOptions {
+  /** What an original that is a `.gltf` names by URI. Default: none, which does for a `.glb`. */
+  originalFiles?: Files | undefined;
 }
 
 export interface CompareOptions extends CompareMeshOptions {
@@ -23,13 +52,9 @@ export interface CompareOptions extends CompareMeshOptions {
 }
 
 /** Of a suspect that is read with a record. */
-export interface CompareWithRecordOptions {
+export interface CompareWithRecordOptions extends ComparingOptions {
   /** What a suspect that is a `.gltf` names by URI. Default: none. */
   files?: Files | undefined;
-  /** Whether `lnP` is told where nothing is found too. Default: false. It follows the key: for the key's owner. */
-  details?: boolean | undefined;
-  /** Default: nobody is told. */
-  onProgress?: OnProgress | undefined;
 }
 
 export interface RecordOptions {
@@ -76,6 +101,45 @@ export interface Comparison {
   motion: number[][] | null;
   /** Natural logarithm of the bound of the false-positive probability, every choice charged. There where found or present, or asked for. */
   lnP?: number;
+  /** The suspect laid on the original, where that was asked for; `null` for another shape. */
+  overlay?: Overlay | null;
+  /** What was found as an HTML file for a person, where that was asked for. */
+  statement?: string;
+}
+
+/** Triangles to be drawn. */
+export interface Sheet {
+  /** Three coordinates for each vertex, in the original's scene units. */
+  positions: Float32Array;
+  /** Three vertices for each triangle. */
+  triangles: Uint32Array;
+}
+
+/** A suspect laid on its original. */
+export interface Overlay {
+  /** Whether the original is what a record keeps of it: some 1200 triangles, from which a copy differs a little everywhere. */
+  isRecorded: boolean;
+  /** The original, or what a record keeps of it. */
+  original: Sheet;
+  /** The suspect, moved to where it lies on the original. */
+  suspect: Sheet;
+  /** For each vertex of the original, how far away the suspect is, as a share of the diagonal; `Infinity` where nothing of the suspect is near. */
+  differences: Float32Array;
+  /** The same for each vertex of the suspect: `Infinity` where it has what the original has not. */
+  additions: Float32Array;
+  /** Up to where nearly all finite differences go: the end of a scale. */
+  mostDifference: number;
+  /**
+   * For each vertex of the original, what a window of the mark there adds to the exponent on the average, in nats: above 0 it speaks for the
+   * mark. `null` where the mark was not read with the original.
+   */
+  evidence: Float32Array | null;
+  /** Up to where nearly all evidence goes. */
+  mostEvidence: number;
+  /** The original's diagonal, in its scene units. */
+  diagonal: number;
+  /** From where the suspect is seen well: a direction of unit length, away from the model. */
+  from: number[];
 }
 
 /** What is thrown by a call that fails. */

@@ -1,9 +1,11 @@
 //! Reading with the original at hand: a module of its own, which is loaded when it is asked for.
 
 use super::options::Options;
-use super::{argument, encoded, files_from, thrown};
-use crate::watermark::{self, Comparison, Error, RecordOptions};
-use crate::{Key, Model, Surface};
+use super::statement::stated;
+use super::{argument, encoded, files_from, set, thrown};
+use crate::watermark::{self, Comparison, Error, Illustration, Overlay, RecordOptions, Sheet};
+use crate::{Finding, Key, Model, Surface};
+use js_sys::{Float32Array, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -17,17 +19,27 @@ pub fn compare(
     key: &[u8],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let known = ["files", "originalFiles", "details", "onProgress"];
+    let known = [
+        "files",
+        "originalFiles",
+        "details",
+        "overlay",
+        "statement",
+        "onProgress",
+    ];
     let options = Options::new(options, &known)?;
-    let is_for_owner = options.is_set("details")?;
+    let (key, asked) = (key_from(key)?, Asked::of(&options)?);
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let of_original = files_from(&options.get("originalFiles"))?;
     let suspect = Model::new(suspect)
         .with_files(&files)
         .with_progress(&mut listener);
     let original = Model::new(original).with_files(&of_original);
-    let comparison = watermark::compare(suspect, original, &key_from(key)?).map_err(thrown)?;
-    told(comparison, is_for_owner)
+    told(
+        watermark::compare_overlaid(suspect, original, &key),
+        &key,
+        &asked,
+    )
 }
 
 /// Reads a suspect that is no glTF with the original.
@@ -39,8 +51,15 @@ pub fn compare_mesh(
     key: &[u8],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let options = Options::new(options, &["originalFiles", "details", "onProgress"])?;
-    let is_for_owner = options.is_set("details")?;
+    let known = [
+        "originalFiles",
+        "details",
+        "overlay",
+        "statement",
+        "onProgress",
+    ];
+    let options = Options::new(options, &known)?;
+    let (key, asked) = (key_from(key)?, Asked::of(&options)?);
     let mut listener = options.listener()?;
     let of_original = files_from(&options.get("originalFiles"))?;
     let (positions, []) = positions.as_chunks() else {
@@ -51,8 +70,11 @@ pub fn compare_mesh(
     };
     let suspect = Surface::new(positions, triangles).with_progress(&mut listener);
     let original = Model::new(original).with_files(&of_original);
-    let comparison = watermark::compare(suspect, original, &key_from(key)?).map_err(thrown)?;
-    told(comparison, is_for_owner)
+    told(
+        watermark::compare_overlaid(suspect, original, &key),
+        &key,
+        &asked,
+    )
 }
 
 /// Reads a suspect with the record of marking it.
@@ -63,14 +85,15 @@ pub fn compare_with_record(
     key: &[u8],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let options = Options::new(options, &["files", "details", "onProgress"])?;
-    let is_for_owner = options.is_set("details")?;
+    let known = ["files", "details", "overlay", "statement", "onProgress"];
+    let options = Options::new(options, &known)?;
+    let (key, asked) = (key_from(key)?, Asked::of(&options)?);
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let suspect = Model::new(suspect)
         .with_files(&files)
         .with_progress(&mut listener);
-    let comparison = watermark::compare_with_record(suspect, record, &key_from(key)?);
-    told(comparison.map_err(thrown)?, is_for_owner)
+    let comparison = watermark::compare_overlaid_with_record(suspect, record, &key);
+    told(comparison, &key, &asked)
 }
 
 /// The record of an embedding.
@@ -97,10 +120,83 @@ fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
     Key::from_bytes(bytes).map_err(Error::from).map_err(thrown)
 }
 
-/// A comparison, with what follows the key where it is for the key's owner.
-fn told(comparison: Comparison, is_for_owner: bool) -> Result<JsValue, JsValue> {
-    encoded(&match is_for_owner {
+/// What is wanted beside the comparison.
+struct Asked {
+    details: bool,
+    overlay: bool,
+    statement: JsValue,
+}
+
+impl Asked {
+    fn of(options: &Options) -> Result<Asked, JsValue> {
+        Ok(Asked {
+            details: options.is_set("details")?,
+            overlay: options.is_set("overlay")?,
+            statement: options.get("statement"),
+        })
+    }
+}
+
+/// A comparison with what was asked for.
+fn told(
+    compared: Result<(Comparison, Option<Overlay>), Error>,
+    key: &Key,
+    asked: &Asked,
+) -> Result<JsValue, JsValue> {
+    let (comparison, overlay) = compared.map_err(thrown)?;
+    let statement = match asked.statement.is_undefined() {
+        true => None,
+        false => {
+            let picture = overlay.as_ref().map(Illustration::of);
+            let finding = Finding::Comparison(&comparison, picture.as_ref());
+            Some(stated(finding, key, &asked.statement)?)
+        }
+    };
+    let result = encoded(&match asked.details {
         true => comparison.with_details(),
         false => comparison,
-    })
+    })?;
+    let object = result.unchecked_ref::<Object>();
+    if let Some(html) = statement {
+        set(object, "statement", &html.into())?;
+    }
+    if asked.overlay {
+        let overlay = overlay.as_ref().map(laid).transpose()?;
+        set(
+            object,
+            "overlay",
+            &overlay.map_or(JsValue::NULL, Into::into),
+        )?;
+    }
+    Ok(result)
+}
+
+fn laid(overlay: &Overlay) -> Result<Object, JsValue> {
+    let floats = |values: &[f32]| JsValue::from(Float32Array::from(values));
+    let evidence = overlay.evidence.as_deref().map_or(JsValue::NULL, floats);
+    let object = Object::new();
+    for (name, value) in [
+        ("isRecorded", overlay.is_recorded.into()),
+        ("original", sheet(&overlay.original)?.into()),
+        ("suspect", sheet(&overlay.suspect)?.into()),
+        ("differences", floats(&overlay.differences)),
+        ("additions", floats(&overlay.additions)),
+        ("mostDifference", overlay.most_difference.into()),
+        ("evidence", evidence),
+        ("mostEvidence", overlay.most_evidence.into()),
+        ("diagonal", overlay.diagonal.into()),
+        ("from", encoded(&overlay.from)?),
+    ] {
+        set(&object, name, &value)?;
+    }
+    Ok(object)
+}
+
+fn sheet(sheet: &Sheet) -> Result<Object, JsValue> {
+    let object = Object::new();
+    let positions = Float32Array::from(sheet.positions.as_flattened());
+    set(&object, "positions", &positions)?;
+    let triangles = Uint32Array::from(sheet.triangles.as_flattened());
+    set(&object, "triangles", &triangles)?;
+    Ok(object)
 }

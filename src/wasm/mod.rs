@@ -21,6 +21,8 @@ mod listener;
 #[cfg(feature = "wasm-marks")]
 mod marks;
 mod options;
+#[cfg(any(feature = "wasm-copies", feature = "wasm-informed"))]
+mod statement;
 #[cfg(feature = "wasm-study")]
 mod study;
 
@@ -59,7 +61,11 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     Ok(named)
 }
 
-#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
+#[cfg(any(
+    feature = "wasm-marks",
+    feature = "wasm-study",
+    feature = "wasm-informed"
+))]
 fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
     js_sys::Reflect::set(object, &name.into(), value).map(drop)
 }

@@ -136,7 +136,7 @@ export type Verification = Extraction;
 
 /** What is likely to leave the mark readable: tried on the marked model itself. */
 export interface Forecast {
-  /** "none", "web", "noise", "quantize", "smooth", "simplify-30", "simplify-70" or "crop". */
+  /** "none", "web", "noise", "quantize", "smooth", "simplify-30", "simplify-50", "simplify-70" or "crop". */
   attack: string;
   /** green: found with a wide margin; amber: found, barely; red: not found. */
   level: "green" | "amber" | "red";

@@ -1,8 +1,9 @@
 //! Reading a suspect with the original at hand.
 
 use super::judge::Judge;
+use super::overlay::Overlay;
 use super::report::{Comparison, Input, Shape, Verdict, Witness};
-use super::weigh::Scales;
+use super::weigh::{Scales, Spoken};
 use super::{EmbedOptions, Error, Model, Suspect};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, Frames, Host, Reading, Seen};
@@ -35,10 +36,49 @@ pub fn compare<'a, 'b>(
     original: impl Into<Model<'b>>,
     key: &Key,
 ) -> Result<Comparison, Error> {
-    compare_in(suspect.into(), &original.into(), key)
+    Ok(compare_in(suspect.into(), &original.into(), key)?.comparison)
 }
 
-fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Comparison, Error> {
+/// As [`compare`], with the suspect laid on the original, to be looked at; `None` for another shape.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_overlaid<'a, 'b>(
+    suspect: impl Into<Suspect<'a>>,
+    original: impl Into<Model<'b>>,
+    key: &Key,
+) -> Result<(Comparison, Option<Overlay>), Error> {
+    Ok(compare_in(suspect.into(), &original.into(), key)?.overlaid())
+}
+
+/// A comparison, and what it was of.
+pub(super) struct Compared {
+    pub comparison: Comparison,
+    pub original: Mesh,
+    pub suspect: Mesh,
+    pub spoken: Spoken,
+}
+
+impl Compared {
+    pub(super) fn overlaid(self) -> (Comparison, Option<Overlay>) {
+        let Compared {
+            comparison,
+            original,
+            suspect,
+            spoken,
+        } = self;
+        let is_heard = comparison
+            .witness
+            .is_some_and(|witness| witness != Witness::Blind);
+        let is_same = comparison.shape == Shape::Same;
+        let motion = comparison.motion.filter(|_| is_same);
+        let overlay =
+            motion.map(|m| Overlay::new(&original, &suspect, m, is_heard.then_some(&spoken)));
+        (comparison, overlay)
+    }
+}
+
+fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Compared, Error> {
     suspect.step(Stage::Read, 0.0)?;
     let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
     let mesh = suspect.mesh()?;
@@ -51,7 +91,12 @@ fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Comparis
         false => Some(read_blind(&mesh, key, &mut suspect)?),
     };
     suspect.step(Stage::Test, 1.0)?;
-    Ok(conclude(heard, blind))
+    Ok(Compared {
+        comparison: conclude(&heard, blind),
+        original: scene.mesh,
+        suspect: mesh,
+        spoken: heard.spoken,
+    })
 }
 
 /// How an original may have been marked: which strength it was does not matter much, for what counts is how vertices move together.
@@ -73,6 +118,7 @@ pub(super) fn with_host<T>(
         admissible: &scene.admissible,
         rms_rel: options.strength.rms_rel(),
         hidden: options.strength.is_hidden(),
+        share: 1.0,
         on_top: false,
     }))
 }
@@ -86,6 +132,8 @@ pub(super) struct Heard {
     /// The likeliest way in which the suspect lies on the original, and the one that was read.
     pub first: Option<Lay>,
     pub read: Option<Lay>,
+    /// What windows said for the mark.
+    pub spoken: Spoken,
 }
 
 /// How a suspect lies on the original.
@@ -176,6 +224,7 @@ fn hear(
         },
         first,
         read: lyings.get(scales.list / 2).map(Lying::lay),
+        spoken: scales.spoken,
     })
 }
 
@@ -194,7 +243,7 @@ pub(super) fn read_blind(
     progress: &mut dyn Progress,
 ) -> Result<Blind, Error> {
     let judge = Judge::new(key, None, Input::Model).one_of(2);
-    let mut readings = Carrier::ALL.map(|_| Default::default());
+    let mut readings = Carrier::STANDARD.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
         let is_settled = |reading: &Reading| judge.is_settled(reading);
         readings[carrier as usize] = carrier.read_until(mesh, key, &is_settled, progress)?;
@@ -214,7 +263,7 @@ pub(super) struct Blind {
 }
 
 /// One answer. What is said of the shape follows no key, unless the mark is found.
-pub(super) fn conclude(heard: Heard, blind: Option<Blind>) -> Comparison {
+pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
     let own = match heard {
         _ if heard.ln_p_payload <= LN_P_FOUND => (Verdict::Found, heard.ln_p_payload),
         _ if heard.ln_p_presence <= LN_P_FOUND => (Verdict::Present, heard.ln_p_presence),

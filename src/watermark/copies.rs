@@ -102,12 +102,16 @@ pub struct StampReport {
 /// is of that specimen, and says what the mark of the copies is likely to survive.
 ///
 /// # Errors
-/// As [`embed`](super::embed); [`Error::NoCopies`] where the model is too small to hold a number.
+/// As [`embed`](super::embed); [`Error::NoCopies`] where the model is too small to hold a number; [`Error::NotInCopies`] where LOCAL is asked
+/// for.
 pub fn prepare<'a>(
     model: impl Into<Model<'a>>,
     key: &Key,
     options: &EmbedOptions,
 ) -> Result<(Plan, EmbedReport), Error> {
+    if options.asked().is_some() {
+        return Err(Error::NotInCopies);
+    }
     let model = model.into();
     let (bytes, files) = (model.bytes.to_vec(), model.files.clone());
     let specimen = Numbers::new(key).payload(SPECIMEN)?;
@@ -211,7 +215,7 @@ impl Plan {
         let written = document.write()?;
         drop(document);
         let mesh = self.shown.scene.mesh.with_positions(moved.positions);
-        let mut readings = Carrier::ALL.map(|_| Default::default());
+        let mut readings = Carrier::STANDARD.map(|_| Default::default());
         for prepared in &self.shown.carriers {
             readings[prepared.carrier() as usize] = prepared.read(&mesh, &self.stored.key);
         }

@@ -28,7 +28,20 @@ pub(super) fn displacement(
     options: &EmbedOptions,
     progress: &mut dyn Progress,
 ) -> Result<Displaced, Error> {
-    let (mesh, used) = displaced(scene, leeway, mark, has_payload, options, progress)?;
+    let mut displaced =
+        |beside| displaced(scene, leeway, mark, has_payload, beside, options, progress);
+    let beside = options.asked();
+    if let Some(asked) = beside.filter(|asked| asked.is_beside_solid(&scene.mesh)) {
+        match displaced(Some(asked)) {
+            Ok((mesh, used)) if used.iter().any(|used| used.carrier == asked) => {
+                return Ok((within_limit(scene, &mesh, options), used));
+            }
+            Err(refusal) if !refusal.is_of_the_model() => return Err(refusal),
+            // SOLID shares nothing with what is left out.
+            _ => {}
+        }
+    }
+    let (mesh, used) = displaced(None)?;
     Ok((within_limit(scene, &mesh, options), used))
 }
 
@@ -83,29 +96,40 @@ pub(super) fn host<'a>(
         leeway,
         admissible: &scene.admissible,
         rms_rel,
+        share: 1.0,
         hidden: options.strength.is_hidden(),
         on_top: !is_first,
     }
 }
 
-/// The host's mesh with the mark in it, in every carrier that it suits.
+/// The host's mesh with the mark in it, in every carrier that it suits; with one beside SOLID, which shares the limit with it.
 fn displaced(
     scene: &Scene,
     leeway: &Leeway,
     mark: &Mark,
     has_payload: bool,
+    beside: Option<Carrier>,
     options: &EmbedOptions,
     progress: &mut dyn Progress,
 ) -> Result<(Mesh, Vec<Used>), Error> {
     let mut mesh = scene.mesh.clone();
     // Marks that are not sturdy, and what was refused.
     let (mut weak, mut refusals) = (Vec::new(), Vec::new());
-    let mut used = Vec::new();
+    let mut used: Vec<Used> = Vec::new();
     for carrier in Carrier::ALL {
-        if !options.carriers.contains(&carrier) {
+        let is_standard = Carrier::STANDARD.contains(&carrier);
+        // What comes beside SOLID holds no payload: it is left out where SOLID does not hold the mark.
+        let is_beside = beside == Some(carrier) && !used.is_empty();
+        if !(is_beside || is_standard && options.carriers.contains(&carrier)) {
             continue;
         }
-        match carrier.embed(&host(scene, &mesh, leeway, options), mark, progress) {
+        let chosen: Vec<Chosen> = used.iter().flat_map(|used| used.chosen.clone()).collect();
+        let mut host = host(scene, &mesh, leeway, options);
+        if is_beside || used.is_empty() && beside.is_some() {
+            host.rms_rel = options.strength.rms_rel();
+            host.share = Carrier::SHARE_BESIDE;
+        }
+        match carrier.embed_above(&host, mark, &chosen, progress) {
             Ok(embedded) if embedded.is_sturdy() => {
                 mesh.displace(&embedded.displacement);
                 used.push(Used {

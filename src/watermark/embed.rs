@@ -3,8 +3,10 @@
 use super::error::Advice;
 use super::forecast::{forecast, is_fragile};
 use super::marking::{Held, Marked, Recipe, WITHOUT_PAYLOAD, hold};
-use super::{EmbedOptions, EmbedReport, Error, Model, Strength};
+use super::{EmbedOptions, EmbedReport, Error, Extraction, Model, Strength};
 use crate::bits::Payload;
+use crate::carrier::Carrier;
+use crate::detection::{LN_P_FOUND, union};
 use crate::digest::sha256;
 use crate::document::{Document, Files, Written};
 use crate::geometry::{Bounds, Deformation, Distortion, diagonal};
@@ -51,6 +53,9 @@ pub(super) fn embed_in(
     if options.carriers.is_empty() {
         return Err(Error::NoCarrier);
     }
+    if options.asked().is_some() && !options.carriers.contains(&Carrier::Solid) {
+        return Err(Error::NoSolid);
+    }
     let Held {
         payload,
         marked:
@@ -75,6 +80,9 @@ pub(super) fn embed_in(
     let deformation = Deformation::between(&host, &parts, &marked.positions);
     let forecast = forecast(&host, &marked, &read_back, key, payload, &mut model)?;
     let is_fragile = is_fragile(&forecast);
+    let about_asked = options
+        .asked()
+        .and_then(|asked| about_asked(asked, &recipe, &read_back));
     let report = EmbedReport {
         tag: payload.and_then(Payload::tag),
         number: payload.map(Payload::number),
@@ -92,6 +100,7 @@ pub(super) fn embed_in(
             .into_iter()
             .chain(strays)
             .chain(unpacked(&written))
+            .chain(about_asked)
             .collect(),
         strength: options.strength.rms_rel(),
         unshown,
@@ -123,7 +132,8 @@ fn advised(
     drop(document);
     let (strong, all) = (Strength::STRONG, EmbedOptions::default());
     let is_weaker = options.strength.rms_rel() < strong.rms_rel();
-    let is_without_some = options.carriers.len() < all.carriers.len();
+    let is_given = |carrier: &Carrier| options.carriers.contains(carrier);
+    let is_without_some = !all.carriers.iter().all(is_given);
     let mut helps = |options: &EmbedOptions| match hold(model, payload, key, options) {
         Err(other) if other.is_of_the_model() => Ok(false),
         held => held.map(|_| true),
@@ -138,6 +148,25 @@ fn advised(
     Ok(Error::Refused {
         refusal: Box::new(refusal),
         advice,
+    })
+}
+
+/// What is said of a carrier that was asked for and is not there.
+fn about_asked(asked: Carrier, recipe: &Recipe, read_back: &Extraction) -> Option<String> {
+    let name = asked.name().to_uppercase();
+    if recipe.shown.iter().all(|used| used.carrier != asked) {
+        return Some(format!(
+            "{name} was left out: too few places of the model are salient enough to be found again in a piece of it"
+        ));
+    }
+    let mut carriers = read_back.details().carriers.iter();
+    let is_read = carriers.any(|read| {
+        read.name == asked && union(read.ln_p, -libm::log(asked.share())) <= LN_P_FOUND
+    });
+    (!is_read).then(|| {
+        format!(
+            "{name} is in the model, but is not found in it as it is: mark the model without it"
+        )
     })
 }
 

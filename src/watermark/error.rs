@@ -138,6 +138,12 @@ pub enum Error {
     /// No carrier was chosen.
     #[error("no carrier was chosen")]
     NoCarrier,
+    /// LOCAL is to be used without SOLID.
+    #[error("LOCAL holds no payload: name the carrier solid beside it")]
+    NoSolid,
+    /// LOCAL is to be used in copies of a plan.
+    #[error("LOCAL cannot be in the copies of a plan: name the carriers solid and ring alone")]
+    NotInCopies,
     /// The model holds a mark without a payload only.
     #[error("the model is too small to hold a number, so its copies cannot be told apart")]
     NoCopies,
@@ -195,6 +201,8 @@ impl Error {
             Error::MaxMovement(_) => "options.max-movement",
             Error::NoCopies => "copies.no-number",
             Error::NoCarrier => "options.no-carrier",
+            Error::NoSolid => "options.no-solid",
+            Error::NotInCopies => "options.not-in-copies",
             Error::Unreadable { .. } => "watermark.unreadable",
             Error::Refused { refusal, .. } => refusal.code(),
             Error::NoteUnreadable => "note.unreadable",

@@ -12,12 +12,13 @@ use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, step};
 
 /// One attack of a kind stands for its kind, each by its name in reports: an attack of the catalogue, and how much of it.
-const ATTACKS: [(&str, Step); 7] = [
+const ATTACKS: [(&str, Step); 8] = [
     (WEB, of(&QUANTIZE_EVENLY, 13.0)),
     ("noise", of(&NOISE, 0.1)),
     ("quantize", of(&QUANTIZE_EVENLY, 11.0)),
     ("smooth", of(&SMOOTH, 10.0)),
     ("simplify-30", of(&SIMPLIFY, 30.0)),
+    ("simplify-50", of(&SIMPLIFY, 50.0)),
     ("simplify-70", of(&SIMPLIFY, 70.0)),
     ("crop", of(&CROP, 30.0)),
 ];
@@ -59,9 +60,9 @@ pub(super) fn forecast(
         let mut report = |_, _| progress.report(Stage::Forecast, done);
         let is_smoothed = name == "smooth";
         // Mostly the first carrier says all: the others are asked only where it does not.
-        let mut readings = Carrier::ALL.map(|_| Default::default());
+        let mut readings = Carrier::STANDARD.map(|_| Default::default());
         let mut found = judge.conclude(&readings);
-        for carrier in Carrier::ALL {
+        for carrier in Carrier::STANDARD {
             let is_settled = |reading: &Reading| judge.is_settled(reading);
             let reading =
                 carrier.read_copy(&suspect, &host, is_smoothed, key, &is_settled, &mut report)?;

@@ -21,6 +21,8 @@ struct Heard {
     is_enough: bool,
     /// What was decoded where another payload was expected.
     other: Option<Other>,
+    /// The places that say together what it says, of LOCAL.
+    num_places: usize,
 }
 
 /// Another payload than the expected one.
@@ -45,12 +47,16 @@ struct Candidate {
 /// Logarithm of the number of payloads.
 const LN_PAYLOADS: f64 = Payload::BITS as f64 * LN_2;
 
-/// Logarithm of the number of carriers: one speaks for all, and which one is not known before.
-const LN_CARRIERS: f64 = LN_2;
-const _: () = assert!(Carrier::ALL.len() == 2);
+/// What each carrier read, in the order of [`Carrier::STANDARD`].
+pub(super) type Readings = [carrier::Reading; Carrier::STANDARD.len()];
 
-/// What each carrier read, in the order of [`Carrier::ALL`].
-pub(super) type Readings = [carrier::Reading; Carrier::ALL.len()];
+/// What a carrier is charged, for one speaks for all, and which one is not known before: the logarithm of its share's inverse.
+fn ln_carriers(carrier: Carrier) -> f64 {
+    -libm::log(carrier.share())
+}
+
+/// The same of those that hold payloads: each has 15 of 32.
+const LN_CARRIERS: f64 = 0.757_685_701_697_516;
 
 /// What a suspect is judged by.
 pub(super) struct Judge {
@@ -79,8 +85,17 @@ impl Judge {
         }
     }
 
-    /// The answer to what each carrier read, in the order of [`Carrier::ALL`].
+    /// The answer to what each carrier read, in the order of [`Carrier::STANDARD`].
     pub(super) fn conclude(&self, readings: &Readings) -> Extraction {
+        self.conclude_with(readings, None)
+    }
+
+    /// The same where one was asked for beside these.
+    pub(super) fn conclude_with(
+        &self,
+        readings: &Readings,
+        asked: Option<(Carrier, carrier::Reading)>,
+    ) -> Extraction {
         let decoded = readings
             .each_ref()
             .map(|reading| likeliest(reading.hypotheses.iter().filter_map(|h| self.decode(h))));
@@ -90,12 +105,13 @@ impl Judge {
         let payload = heard
             .min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
             .map(|loudest| loudest.payload);
-        let all = Carrier::ALL.into_iter().zip(readings).zip(decoded);
+        let all = Carrier::STANDARD.into_iter().zip(readings).zip(decoded);
         let heard = all.map(|((carrier, reading), own)| {
             let own = own.filter(|own| Some(own.payload) == payload);
             self.hear(carrier, reading, own, payload.is_some())
         });
-        conclude(heard.collect(), self.input)
+        let asked = asked.map(|(carrier, reading)| self.hear_presence(carrier, &reading));
+        conclude(heard.chain(asked).collect(), self.input)
     }
 
     /// Whether what a carrier has read so far leaves nothing to look for: its payload is found by a wide margin, or it is a mark without
@@ -170,6 +186,36 @@ impl Judge {
                 first.is_some_and(|h| charge(h) - most <= LN_P_FOUND)
             },
             other,
+            num_places: 0,
+        }
+    }
+
+    /// What a carrier says that holds no payload. One test is made of each way: of its symbols against a mark without a payload.
+    fn hear_presence(&self, name: Carrier, reading: &carrier::Reading) -> Heard {
+        let (mut ln_p, mut agreement, mut num_places) = (0.0, 0.0, 0);
+        for (number, way) in (1..).zip(&reading.hypotheses) {
+            let [_, presence] = without_payload(&way.symbols);
+            let charged = union(presence.ln_p(), way.ln_num_tests + self.ln_num_keys);
+            if charged < ln_p {
+                (ln_p, agreement, num_places) = (charged, presence.agreement(), number);
+            }
+        }
+        let owned = reading.hypotheses.iter().map(|way| way.symbols.len());
+        Heard {
+            report: CarrierReading {
+                name,
+                ln_p,
+                tag: None,
+                number: None,
+                piece: None,
+                agreement,
+                addresses: reading.num_addresses,
+                owned_addresses: owned.max().unwrap_or(0),
+            },
+            ln_p_payload: 0.0,
+            is_enough: false,
+            other: None,
+            num_places,
         }
     }
 
@@ -273,8 +319,10 @@ const CARRIED_OVER: &str = "Only the way in which vertices are connected says so
 /// One verdict from all carriers' readings; the choice between carriers is charged. Below `found` the words hold nothing that
 /// follows the key but the verdict.
 fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
-    let best =
-        |ln_p: fn(&Heard) -> f64| union(heard.iter().map(ln_p).fold(0.0, f64::min), LN_CARRIERS);
+    let best = |ln_p: fn(&Heard) -> f64| {
+        let charged = |heard: &Heard| union(ln_p(heard), ln_carriers(heard.report.name));
+        heard.iter().map(charged).fold(0.0, f64::min)
+    };
     let ln_p_payload = best(|heard| heard.ln_p_payload);
     // The number beside a payload speaks for it: pilots speak for the key alone.
     let ln_p = if ln_p_payload <= LN_P_FOUND {
@@ -309,6 +357,17 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
         (Verdict::None, Some(reason))
     };
     let mut reason = reason.map(str::to_owned);
+    let says_so =
+        |heard: &&Heard| union(heard.report.ln_p, ln_carriers(heard.report.name)) <= LN_P_FOUND;
+    if verdict == Verdict::Present
+        && let Some(local) = heard.iter().find(|heard| heard.num_places > 0)
+        && says_so(&local)
+    {
+        reason = Some(match local.num_places {
+            1 => "Found by LOCAL, in one place. LOCAL holds no payload.".to_owned(),
+            places => format!("Found by LOCAL, in {places} places. LOCAL holds no payload."),
+        });
+    }
     if let (Some(reason), Some(other)) = (&mut reason, other.filter(|_| ln_p_other <= LN_P_FOUND)) {
         let tag = other.payload.tag();
         reason.push_str(" It is ");
@@ -316,10 +375,8 @@ fn conclude(heard: Vec<Heard>, input: Input) -> Extraction {
         reason.push('.');
     }
     let is_there = matches!(verdict, Verdict::Found | Verdict::Present);
-    let is_in_shape = heard.iter().any(|heard| {
-        let reading = &heard.report;
-        !reading.name.can_be_carried_over() && union(reading.ln_p, LN_CARRIERS) <= LN_P_FOUND
-    });
+    let mut saying_so = heard.iter().filter(says_so);
+    let is_in_shape = saying_so.any(|heard| !heard.report.name.can_be_carried_over());
     Extraction {
         verdict,
         input,

@@ -1,10 +1,11 @@
 //! Marking: read, displace, write, and read back as any detector would.
 
 use super::displace::{Moved, Used, displacement, write};
+use super::extract::read_in_one_go;
 use super::read_back::{is_read, is_seen_at_once};
 use super::report::Unshown;
 use super::unshown::{UsedByMesh, mark_unshown};
-use super::{EmbedOptions, Error, Extraction, Model, detect};
+use super::{EmbedOptions, Error, Extraction, Model};
 use crate::bits::Payload;
 use crate::carrier::{Carrier, CarrierError, Mark};
 use crate::code::{Checked, Codeword};
@@ -58,7 +59,8 @@ fn hold_content(
     let mut marked_files = model.files.clone();
     marked_files.extend(marked.written.files.clone());
     let copy = Model::new(&marked.written.model).with_files(&marked_files);
-    let read_back = detect(copy.with_progress(model), key, None)?;
+    let copy = copy.with_progress(model).into();
+    let read_back = read_in_one_go(copy, key, None, options.asked())?;
     if !is_read(&read_back, payload) {
         return Err(unreadable());
     }

@@ -8,12 +8,14 @@ mod embed;
 mod error;
 mod extract;
 mod forecast;
+mod illustration;
 mod inspect;
 mod judge;
 mod marking;
 mod model;
 mod note;
 mod options;
+mod overlay;
 mod plan;
 mod read_back;
 mod record;
@@ -25,20 +27,24 @@ mod unshown;
 mod weigh;
 
 pub use capacity::{Capacity, Holds, capacity};
-pub use compare::compare;
+pub use compare::{compare, compare_overlaid};
 pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error, PlanError, RecordError};
+#[cfg(feature = "local")]
+pub use extract::detect_with_local;
 pub use extract::{detect, extract, extract_many, measure, verify};
+pub use illustration::Illustration;
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
 pub use note::{
     NoteEmbedding, NoteReading, NoteReport, NoteSize, embed_note, note_capacity, read_note,
 };
 pub use options::{EmbedOptions, Strength};
+pub use overlay::{Overlay, Sheet};
 #[cfg(all(target_arch = "wasm32", feature = "wasm-informed"))]
 pub(crate) use record::record_of;
-pub use record::{RecordOptions, compare_with_record, record};
+pub use record::{RecordOptions, compare_overlaid_with_record, compare_with_record, record};
 pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
     Shape, Unshown, Verdict, Witness,

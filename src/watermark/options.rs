@@ -10,7 +10,8 @@ use crate::geometry::Bounds;
 pub struct EmbedOptions {
     /// Default: [`Strength::BALANCED`].
     pub strength: Strength,
-    /// Which carriers to use, in any order; repetitions do not matter. Default: all.
+    /// Which carriers to use, in any order; repetitions do not matter. LOCAL, where it is compiled, needs SOLID beside it. Default: SOLID and
+    /// RING.
     pub carriers: Vec<Carrier>,
     /// How far a vertex may go at most, in scene units: metres, where the file keeps to glTF's. Positive. Default: as the strength allows.
     pub max_movement: Option<f64>,
@@ -20,7 +21,7 @@ impl Default for EmbedOptions {
     fn default() -> Self {
         EmbedOptions {
             strength: Strength::BALANCED,
-            carriers: Carrier::ALL.to_vec(),
+            carriers: Carrier::STANDARD.to_vec(),
             max_movement: None,
         }
     }
@@ -51,6 +52,12 @@ impl EmbedOptions {
             max_movement: Some(max_movement),
             ..self
         }
+    }
+
+    /// A carrier that comes beside SOLID, and is read where it is asked for.
+    pub(super) fn asked(&self) -> Option<Carrier> {
+        let asked = |carrier: &&Carrier| !Carrier::STANDARD.contains(carrier);
+        self.carriers.iter().find(asked).copied()
     }
 
     /// The same with these carriers alone.

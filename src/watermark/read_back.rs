@@ -24,8 +24,8 @@ pub(super) fn is_seen_at_once(
     payload: Option<Payload>,
     progress: &mut dyn Progress,
 ) -> Result<bool, Error> {
-    let mut readings = Carrier::ALL.map(|_| Default::default());
-    for carrier in Carrier::ALL {
+    let mut readings = Carrier::STANDARD.map(|_| Default::default());
+    for carrier in Carrier::STANDARD {
         readings[carrier as usize] = carrier.read_at_once(mesh, key, progress)?;
     }
     let read = Judge::new(key, None, Input::Model).conclude(&readings);

@@ -2,7 +2,8 @@
 //!
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
-use super::compare::{Heard, Lay, conclude, options_of_original, read_blind, with_host};
+use super::compare::{Compared, Heard, Lay, conclude, options_of_original, read_blind, with_host};
+use super::overlay::Overlay;
 use super::report::{Comparison, EmbedReport, Witness};
 use super::weigh::Scales;
 use super::{Error, Model, RecordError, Suspect};
@@ -165,21 +166,45 @@ pub fn compare_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<Comparison, Error> {
-    compare_in(suspect.into(), record, key)
+    Ok(compare_in(suspect.into(), record, key)?.comparison)
 }
 
-fn compare_in(mut suspect: Suspect, record: &str, key: &Key) -> Result<Comparison, Error> {
+/// As [`compare_with_record`], with the suspect laid on the recorded shape, to be looked at; `None` for another shape. Where they differ by less
+/// than a record's few triangles show, it is the record that differs.
+///
+/// # Errors
+/// As [`compare_with_record`].
+pub fn compare_overlaid_with_record<'a>(
+    suspect: impl Into<Suspect<'a>>,
+    record: &str,
+    key: &Key,
+) -> Result<(Comparison, Option<Overlay>), Error> {
+    let (comparison, overlay) = compare_in(suspect.into(), record, key)?.overlaid();
+    let recorded = overlay.map(|overlay| Overlay {
+        is_recorded: true,
+        ..overlay
+    });
+    Ok((comparison, recorded))
+}
+
+fn compare_in(mut suspect: Suspect, record: &str, key: &Key) -> Result<Compared, Error> {
     let (shape, recorded) = opened(record, key)?;
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
-    let heard = hear(&shape.mesh(), &recorded, &mesh, key, &mut suspect)?;
+    let original = shape.mesh();
+    let heard = hear(&original, &recorded, &mesh, key, &mut suspect)?;
     let blind = match heard.ln_p_payload <= LN_P_FOUND {
         true => None,
         false => Some(read_blind(&mesh, key, &mut suspect)?),
     };
     suspect.step(Stage::Test, 1.0)?;
-    Ok(conclude(heard, blind))
+    Ok(Compared {
+        comparison: conclude(&heard, blind),
+        original,
+        suspect: mesh,
+        spoken: heard.spoken,
+    })
 }
 
 fn hear(
@@ -223,6 +248,7 @@ fn hear(
         witness: Witness::Surface,
         first: lays.iter().max_by(by_near).copied(),
         read: lays.get(scales.list / 2).copied(),
+        spoken: scales.spoken,
     })
 }
 

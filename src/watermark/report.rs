@@ -330,7 +330,7 @@ pub enum Level {
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub struct Forecast {
-    /// Which attack: `none`, `web`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-70` or `crop`.
+    /// Which attack: `none`, `web`, `noise`, `quantize`, `smooth`, `simplify-30`, `simplify-50`, `simplify-70` or `crop`.
     pub attack: &'static str,
     /// What is likely.
     pub level: Level,

@@ -1,6 +1,7 @@
 //! A statement: what was found in a suspect, as one HTML file that a person prints or sends. No script, nothing from the network.
 
-use super::report::{Extraction, Input, Verdict};
+use super::illustration::{self, Illustration};
+use super::report::{Comparison, Extraction, Input, Shape, Verdict};
 use super::trace::{Traced, Tracing};
 use std::f64::consts::LN_10;
 use std::fmt::Write;
@@ -26,6 +27,8 @@ pub enum Finding<'a> {
     Reading(&'a Extraction),
     /// Whose copies are in it, and what the ledger calls some numbers.
     Tracing(&'a Tracing, &'a [(u64, String)]),
+    /// With the original or a record; and a picture of the suspect laid on it.
+    Comparison(&'a Comparison, Option<&'a Illustration>),
 }
 
 /// What a statement says beside the finding. Every word is shown as text, whatever is in it.
@@ -83,18 +86,20 @@ impl Statement<'_> {
         let commands: Vec<String> = self.commands.iter().map(|line| text(line)).collect();
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-             <title>{plain_title}</title>\n<style>{STYLE}</style>\n<h1>{title}</h1>\n<p>{meaning}</p>\n\
-             {answer}<section class=\"box\"><h2>What this does not prove</h2>\n<ul>\n{limits}</ul></section>\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n\
+             <title>{plain_title}</title>\n<style>{STYLE}{}</style>\n<h1>{title}</h1>\n<p>{meaning}</p>\n{answer}{shape}\
+             <section class=\"box\"><h2>What this does not prove</h2>\n<ul>\n{limits}</ul></section>\n\
              <h2>Facts</h2>\n<table>\n{facts}</table>\n\
              <section><h2>How to repeat it</h2>\n<p>Whoever has the key and the files gets the same answer, on any machine:</p>\n<pre>{}</pre></section>\n\
              <section><h2>When it was so</h2>\n<p>Nothing was sent anywhere, and nothing here proves a date. To show later that the suspect or this report existed today, hand its \
              SHA-256 to a timestamping service (RFC 3161) or to a notary; a timestamp of the marked model, taken when it was marked, shows more.</p></section>\n</html>\n",
+            illustration::STYLE,
             commands.join("\n"),
             plain_title = escaped(title),
             title = text(title),
             meaning = text(&meaning),
             answer = self.answer(),
+            shape = self.shape(),
         )
     }
 
@@ -102,6 +107,7 @@ impl Statement<'_> {
         match self.finding {
             Finding::Reading(reading) => reading.sentence,
             Finding::Tracing(tracing, _) => tracing.sentence,
+            Finding::Comparison(comparison, _) => comparison.sentence,
         }
     }
 
@@ -109,11 +115,7 @@ impl Statement<'_> {
     fn meaning(&self) -> String {
         match self.finding {
             Finding::Reading(reading) => match reading.verdict {
-                Verdict::Found | Verdict::Present => format!(
-                    "The suspect holds a mark of this key. A model that was made without the key would be given this answer with a \
-                     probability of {}.",
-                    chance(reading.details().ln_p)
-                ),
+                Verdict::Found | Verdict::Present => holds_a_mark(reading.details().ln_p),
                 _ => reading.reason.clone().unwrap_or_default(),
             },
             Finding::Tracing(tracing, _) => match tracing.traced {
@@ -129,6 +131,11 @@ impl Statement<'_> {
                                    whose it was, or it is a copy that the ledger does not have."
                     .to_owned(),
                 _ => tracing.reading.reason.clone().unwrap_or_default(),
+            },
+            Finding::Comparison(comparison, _) => match comparison.verdict {
+                Verdict::Found | Verdict::Present => holds_a_mark(comparison.ln_p()),
+                Verdict::Partial => "What was read fits this key, but not so well that chance is excluded.".to_owned(),
+                _ => "What was read agrees with this key no better than by chance.".to_owned(),
             },
         }
     }
@@ -159,6 +166,35 @@ impl Statement<'_> {
         )
     }
 
+    /// Of a comparison: whether the shape is the original's, in words and in a picture.
+    fn shape(&self) -> String {
+        let Finding::Comparison(comparison, picture) = self.finding else {
+            return String::new();
+        };
+        let near = percent(comparison.near);
+        let words = match (comparison.shape, comparison.motion) {
+            (Shape::Same, _) => format!(
+                "The shape is the original\u{2019}s. {near} of the suspect\u{2019}s surface lies on the original when it is moved there{}, and \
+                 shows {} of it.",
+                if comparison.is_mirrored {
+                    " and mirrored"
+                } else {
+                    ""
+                },
+                percent(comparison.covered),
+            ),
+            (Shape::Other, Some(_)) => format!(
+                "It is another shape: moved to the likeliest place on the original, {near} of the suspect\u{2019}s surface lies there."
+            ),
+            (Shape::Other, None) => {
+                "It is another shape: no way was found to lay the suspect on the original."
+                    .to_owned()
+            }
+        };
+        let figure = picture.map_or("", |picture| &picture.html);
+        format!("<p>{}</p>\n{figure}", text(&words))
+    }
+
     fn found(&self, fact: &mut impl FnMut(&str, &str)) {
         let input = match self.finding {
             Finding::Reading(reading) => {
@@ -185,6 +221,15 @@ impl Statement<'_> {
                 fact("Ways of reading tested", &tracing.num_ways.to_string());
                 tracing.reading.input
             }
+            Finding::Comparison(comparison, _) => {
+                if let Some(tag) = &comparison.tag {
+                    fact("Tag that was read", tag);
+                }
+                if let Some(number) = comparison.number {
+                    fact("Number that was read", &number.to_string());
+                }
+                Input::Model
+            }
         };
         if input == Input::Evidence {
             fact(
@@ -195,17 +240,21 @@ impl Statement<'_> {
     }
 
     fn limits(&self) -> Vec<&'static str> {
-        let reading = match self.finding {
-            Finding::Reading(reading) => reading,
-            Finding::Tracing(tracing, _) => &tracing.reading,
+        let caution = match self.finding {
+            Finding::Reading(reading) => reading.caution,
+            Finding::Tracing(tracing, _) => tracing.reading.caution,
+            Finding::Comparison(..) => None,
         };
-        let mut limits = Vec::from_iter(reading.caution);
+        let mut limits = Vec::from_iter(caution);
         let is_positive = match self.finding {
             Finding::Reading(reading) => {
                 matches!(reading.verdict, Verdict::Found | Verdict::Present)
             }
             Finding::Tracing(tracing, _) => {
                 matches!(tracing.traced, Traced::Named | Traced::Nobody)
+            }
+            Finding::Comparison(comparison, _) => {
+                matches!(comparison.verdict, Verdict::Found | Verdict::Present)
             }
         };
         if is_positive {
@@ -226,9 +275,31 @@ impl Statement<'_> {
                 "That nobody else had a part in it: a share that is too small is not seen.",
             ]);
         }
+        if let Finding::Comparison(comparison, _) = self.finding {
+            if is_positive {
+                limits.push(
+                    "Anything, if the original or the record was made after the suspect was seen: whoever holds the key can make an \
+                     \u{201c}original\u{201d} that any model seems to be a copy of. Show that it is older.",
+                );
+            }
+            if comparison.shape == Shape::Same {
+                limits.push("That a likeness of shapes is a copy: two people may model or scan the same thing. It is the mark that tells a copy.");
+            }
+        }
         limits.push("More than the keyed function it rests on (SipHash-2-4 with keys of 128 bits), which is taken for random to who has no key.");
         limits
     }
+}
+
+fn holds_a_mark(ln_p: f64) -> String {
+    format!(
+        "The suspect holds a mark of this key. A model that was made without the key would be given this answer with a probability of {}.",
+        chance(ln_p)
+    )
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
 }
 
 /// A bound in words, and as a power of ten.

@@ -83,7 +83,7 @@ pub fn trace<'a>(
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
-    let mut readings = Carrier::ALL.map(|_| Default::default());
+    let mut readings = Carrier::STANDARD.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
         readings[carrier as usize] = carrier.read_until(&mesh, key, &is_loud, &mut suspect)?;
     }
@@ -98,7 +98,7 @@ pub fn trace<'a>(
 /// [`Error::Payload`] for a number out of range.
 pub fn trace_evidence(evidence: &Evidence, key: &Key, numbers: &[u64]) -> Result<Tracing, Error> {
     let read = |carrier| evidence.measurement(carrier).read_until(key, &is_loud);
-    conclude(&Carrier::ALL.map(read), key, numbers, Input::Evidence)
+    conclude(&Carrier::STANDARD.map(read), key, numbers, Input::Evidence)
 }
 
 /// Whether pilots speak so loudly that nothing has to be undone first.

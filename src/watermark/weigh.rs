@@ -3,8 +3,9 @@
 use crate::bits::Payload;
 use crate::carrier::{Place, Way};
 use crate::code::{Checked, Codeword, SoftSymbol, Symbol, decode};
-use crate::detection::{LN_P_FOUND, LN_P_TRACE, ln_p_of_errors, union};
+use crate::detection::{LN_P_FOUND, LN_P_TRACE, exponents_of_errors, ln_p_of_errors, union};
 use crate::key::Key;
+use glam::DVec3;
 use std::f64::consts::LN_2;
 
 /// Logarithm of the number of payloads.
@@ -25,6 +26,31 @@ pub(super) struct Scales {
     pub payload: Option<Payload>,
     /// The list of the way that spoke loudest.
     pub list: usize,
+    /// What its windows said.
+    pub spoken: Spoken,
+}
+
+/// What each window said for the mark that was heard.
+#[derive(Default)]
+pub(super) struct Spoken {
+    /// Of every window, in the original's scene units.
+    pub radius: f64,
+    /// The windows that were seen: their centres, and what each adds to the exponent before charges.
+    pub windows: Vec<(DVec3, f64)>,
+}
+
+impl Spoken {
+    /// Of a way, with the errors that the mark leaves.
+    fn of(way: &Way, error: impl Fn(&Place) -> f64) -> Spoken {
+        let terms = way.places.iter().map(|p| (p.response, error(p)));
+        let exponents = exponents_of_errors(&terms.collect::<Vec<_>>());
+        let all = way.places.iter().zip(exponents);
+        let seen = all.filter(|(place, _)| place.response != 0.0);
+        Spoken {
+            radius: way.radius,
+            windows: seen.map(|(p, exponent)| (p.centre, exponent)).collect(),
+        }
+    }
 }
 
 impl Scales {
@@ -35,6 +61,7 @@ impl Scales {
             ln_p_payload: 0.0,
             payload: None,
             list: 0,
+            spoken: Spoken::default(),
         }
     }
 
@@ -50,6 +77,14 @@ impl Scales {
             self.ln_p_presence = ln_p;
             if self.payload.is_none() {
                 self.list = way.list;
+                let of_pilot = |p: &Place| match p.symbol {
+                    Symbol::Pilot => p.errors[1],
+                    _ => 0.0,
+                };
+                self.spoken = match presence < pilots {
+                    true => Spoken::of(way, |p| error(p, &Codeword::Presence)),
+                    false => Spoken::of(way, of_pilot),
+                };
             }
         }
         if let Some((payload, ln_p)) = self.decoded(&way.places, charge)
@@ -58,6 +93,8 @@ impl Scales {
             self.ln_p_payload = ln_p;
             self.payload = Some(payload);
             self.list = way.list;
+            let codeword = Codeword::new(self.check.message(payload));
+            self.spoken = Spoken::of(way, |p| error(p, &codeword));
         }
         // Of a mark with a payload, parities that say -1 are no more than half: its pilots are louder.
         let is_without = presence < pilots && union(presence, charge) <= 2.0 * LN_P_FOUND;
@@ -94,8 +131,10 @@ fn soft(place: &Place) -> SoftSymbol {
 
 /// The bound of errors against a codeword.
 fn against(places: &[Place], codeword: &Codeword) -> f64 {
-    ln_p_of_errors(places.iter().map(|place| {
-        let is_plus = codeword.sign(place.symbol) > 0.0;
-        (place.response, place.errors[usize::from(is_plus)])
-    }))
+    ln_p_of_errors(places.iter().map(|p| (p.response, error(p, codeword))))
+}
+
+/// By how much of a step the embedder had to move a window for a codeword.
+fn error(place: &Place, codeword: &Codeword) -> f64 {
+    place.errors[usize::from(codeword.sign(place.symbol) > 0.0)]
 }

@@ -274,7 +274,7 @@ fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
     hold_surfaces(name, &plain.collect(), keys);
 }
 
-/// A commit tries so many keys on each surface; `cargo xtask test --all` tries more.
+/// A commit tries so many keys on each surface, which give each a test below one tenth; `cargo xtask test --all` tries more.
 const KEYS: u64 = 200;
 const ALL_KEYS: u64 = 1_000;
 
@@ -312,7 +312,7 @@ fn repeated_rocks() -> Mesh {
 
 #[test]
 fn bound_holds_for_pieces() {
-    hold_pieces("repeated rocks", &repeated_rocks(), KEYS / 4);
+    hold_pieces("repeated rocks", &repeated_rocks(), KEYS / 10);
 }
 
 /// A rock whose surface is written in both directions, with a shell about it on a bridge: pieces that are nearly alike.
@@ -324,7 +324,7 @@ fn layered_rock() -> Mesh {
 
 #[test]
 fn bound_holds_for_layers() {
-    hold_pieces("a layered rock", &layered_rock(), KEYS / 4);
+    hold_pieces("a layered rock", &layered_rock(), KEYS / 10);
 }
 
 #[test]
@@ -386,7 +386,7 @@ fn charges_are_those_that_are_declared() {
         .map(of_kind)
         .collect();
     let mut num_split = 0;
-    for number in 0..60 {
+    for number in 0..16 {
         let key = random_key(number);
         let own = rings.read(&key);
         assert_eq!(own.hypotheses.len(), 10);

@@ -1,7 +1,9 @@
 //! The bound: what it is, that it holds, and that it survives extreme numbers.
 
 use crate::support::fixtures::key;
-use meshmark::internals::detection::{LN_P_FOUND, LN_P_TRACE, Statistic, ln_p_of_errors, union};
+use meshmark::internals::detection::{
+    LN_P_FOUND, LN_P_TRACE, Statistic, exponents_of_errors, ln_p_of_errors, union,
+};
 use std::f64::consts::TAU;
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -130,4 +132,21 @@ fn detection_errors_that_are_none_say_nothing() {
     assert!(ln_p_of_errors([(1.0, -0.4); 8].into_iter()) == 0.0);
     let sure = ln_p_of_errors([(1.0, 0.49); 100].into_iter());
     assert!(sure < -200.0, "{sure}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn detection_exponents_of_errors_add_up_to_the_bound() {
+    let unit = |i: u32| f64::from(i * 37 % 101) / 101.0;
+    let terms: Vec<(f64, f64)> = (0..400)
+        .map(|i| (unit(i) - 0.2, unit(i)))
+        .map(|(m, other)| (m, 0.3 * m + 0.2 * (other - 0.5)))
+        .collect();
+    let exponents = exponents_of_errors(&terms);
+    let ln_p = ln_p_of_errors(terms.iter().copied());
+    assert!(ln_p < -5.0, "{ln_p}");
+    assert!((exponents.iter().sum::<f64>() + ln_p).abs() < 1e-9);
+    assert_eq!(
+        exponents_of_errors(&[(1.0, -0.5), (f64::NAN, 0.5)]),
+        [0.0, 0.0]
+    );
 }

@@ -11,8 +11,8 @@ use meshmark::internals::geometry::{Bounds, Leeway, Original, Parts, Search, Sho
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    Comparison, Embedding, RecordOptions, Shape, Verdict, Witness, compare, compare_with_record,
-    record,
+    Comparison, Embedding, RecordOptions, Shape, Verdict, Witness, compare, compare_overlaid,
+    compare_with_record, record,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -102,6 +102,42 @@ fn informed_tells_an_unmarked_copy_from_another_shape() {
     );
 }
 
+/// What a person is shown: the piece where it was cut out, with the mark's evidence there and nowhere else.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_lays_a_piece_on_its_original() {
+    let (original, marked, mesh) = case();
+    let piece = simplify(&crop(&mesh, 0.3, 3), 0.5);
+    let piece = to_glb(&similarity(&piece, 4));
+    let (answer, overlay) = compare_overlaid(&piece, &original, &key(1)).unwrap();
+    assert_found(&answer, "overlaid");
+    assert_eq!(answer, compare(&piece, &original, &key(1)).unwrap());
+    let overlay = overlay.unwrap();
+    let host = mesh_of(&original);
+    assert_eq!(overlay.original.triangles, host.triangles);
+    assert_eq!(overlay.differences.len(), host.positions.len());
+    let all = overlay.differences.len() as f64;
+    let near = overlay.differences.iter().filter(|d| d.is_finite());
+    let share = near.count() as f64 / all;
+    assert!((share - answer.covered).abs() < 0.1, "{share}");
+    assert!(overlay.additions.iter().all(|d| *d < 0.006));
+    let evidence = overlay.evidence.as_deref().unwrap();
+    let mean = evidence.iter().map(|e| f64::from(*e)).sum::<f64>() / (share * all);
+    assert!(mean > 0.1, "{mean}");
+    let mut cut = evidence.iter().zip(&overlay.differences);
+    assert!(cut.all(|(e, d)| d.is_finite() || *e == 0.0));
+    let wrong = compare_overlaid(&marked.model, &original, &key(2))
+        .unwrap()
+        .1;
+    let wrong = wrong.unwrap();
+    assert_eq!(wrong.evidence, None, "what was not found is not told");
+    assert!(wrong.differences.iter().all(|d| *d < 0.01));
+    let other = to_glb(&shapes::torus_knot(60, 20));
+    assert_eq!(
+        compare_overlaid(&other, &original, &key(1)).unwrap().1,
+        None
+    );
+}
+
 /// Keys that marked nothing, on a marked copy that lies on its original.
 #[wasm_bindgen_test(unsupported = test)]
 fn informed_bound_holds_for_wrong_keys() {
@@ -116,6 +152,7 @@ fn informed_bound_holds_for_wrong_keys() {
         admissible: &admissible,
         rms_rel: 0.0004,
         hidden: true,
+        share: 1.0,
         on_top: false,
     };
     let surface = Original::new(&original);

@@ -72,7 +72,7 @@ fn layers_of_one_surface_are_one() {
 /// Of each attack on how triangles are written: what is found without it is found with it, in each carrier alone.
 #[wasm_bindgen_test(unsupported = test)]
 fn layers_hide_no_carrier() {
-    for carrier in Carrier::ALL {
+    for carrier in Carrier::STANDARD {
         let model = mesh_of(&marked(&shapes::asteroid(40, 60), &[carrier]));
         for (name, suspect) in [
             ("both sides", both_sides(&model)),
@@ -120,10 +120,10 @@ fn layers_leave_the_shape_readable() {
 #[wasm_bindgen_test(unsupported = test)]
 fn layers_of_a_host_move_together() {
     let rock = shapes::asteroid(40, 60);
-    let one = marked(&rock, &Carrier::ALL);
-    let two = marked(&both_sides(&rock), &Carrier::ALL);
+    let one = marked(&rock, &Carrier::STANDARD);
+    let two = marked(&both_sides(&rock), &Carrier::STANDARD);
     assert_eq!(mesh_of(&two), mesh_of(&one));
-    let copied = marked(&copies(&rock, 1.0, 1, 0.0, 4), &Carrier::ALL);
+    let copied = marked(&copies(&rock, 1.0, 1, 0.0, 4), &Carrier::STANDARD);
     let document = Document::read(&copied.model, &Default::default()).unwrap();
     let placed = document.positions(0).unwrap();
     let (own, copy) = placed.split_at(rock.positions.len());
@@ -139,11 +139,11 @@ fn layers_of_a_host_move_together() {
 #[wasm_bindgen_test(unsupported = test)]
 fn layers_do_not_count_strays() {
     let rock = shapes::asteroid(40, 60);
-    let alone = marked(&rock, &Carrier::ALL);
+    let alone = marked(&rock, &Carrier::STANDARD);
     for away in [3.0, 10.0, 100.0] {
         let strewn = stray(&rock, away);
         assert_eq!(gathered(&strewn).strays.len(), 1, "{away}");
-        let marked = marked(&strewn, &Carrier::ALL);
+        let marked = marked(&strewn, &Carrier::STANDARD);
         assert_eq!(marked.report.rms_rel, alone.report.rms_rel);
         assert_eq!(marked.report.diagonal, alone.report.diagonal);
         assert!(

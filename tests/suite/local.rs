@@ -21,9 +21,10 @@ fn embedded(mesh: &Mesh, owner: u8) -> Option<Embedded> {
         admissible: &Admissible::default(),
         rms_rel: RMS_REL,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
-    embed(&host, &key(owner), &mut ignore).unwrap()
+    embed(&host, &key(owner), &[], &mut ignore).unwrap()
 }
 
 fn marked(mesh: &Mesh, owner: u8) -> Mesh {

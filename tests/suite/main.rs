@@ -3,10 +3,14 @@
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
 mod architecture;
+#[cfg(not(target_arch = "wasm32"))]
+// the modules for JavaScript are without LOCAL, and embedding it takes a minute there
+mod asked;
 mod attack;
 #[cfg(not(target_arch = "wasm32"))]
 // a hundred thousand keys, and nothing that differs between targets
 mod bound;
+mod c2pa;
 mod code;
 mod copies;
 mod curvature;
@@ -23,6 +27,8 @@ mod key;
 mod layers;
 mod leeway;
 mod levels;
+#[cfg(not(target_arch = "wasm32"))]
+// no module for JavaScript has LOCAL
 mod local;
 mod mesh;
 mod models;
@@ -43,5 +49,6 @@ mod support;
 mod suspects;
 mod text;
 mod trace;
+mod vectors;
 mod watermark;
 mod wild;

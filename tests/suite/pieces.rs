@@ -196,6 +196,7 @@ fn pieces_that_are_instances_share_their_mark() {
         },
         rms_rel: Strength::STRONG.rms_rel(),
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let message = Checked::new(&key(1)).message(payload());

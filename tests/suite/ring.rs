@@ -21,6 +21,7 @@ fn marked(mesh: &Mesh, admissible: &Admissible) -> Vec<DVec3> {
         admissible,
         rms_rel: 0.0004,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let mark = Mark {
@@ -210,6 +211,7 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let mark = Mark {

@@ -33,6 +33,7 @@ fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
             admissible: &Admissible::default(),
             rms_rel,
             hidden: false,
+            share: 1.0,
             on_top: false,
         },
         owner,
@@ -141,6 +142,7 @@ fn solid_hides_in_rough_surfaces() {
         admissible: &Admissible::default(),
         rms_rel: 0.0004,
         hidden: true,
+        share: 1.0,
         on_top: false,
     };
     let result = marked_as(&host, 1);
@@ -251,6 +253,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         admissible: &Admissible::default(),
         rms_rel: 0.0008,
         hidden: false,
+        share: 1.0,
         on_top: false,
     };
     let mark = Mark {

@@ -48,6 +48,22 @@ test("a marked copy is found with the original and with the record, and results 
   assert.throws(() => informed.compareWithRecord(embedding.model, "{}", key), { code: "record.not-a-record" });
 });
 
+test("what is seen of a comparison, and its statement, come where they are asked for", () => {
+  const statement = { owner: "Ada", date: "today", files: [{ role: "Suspect", name: "<b>.glb", bytes: 1, sha256: "00" }], commands: ["meshmark extract it"] };
+  const comparison = informed.compare(embedding.model, original, key, { overlay: true, statement });
+  assert.deepEqual(contract.differences("Comparison", comparison), []);
+  const { overlay } = comparison;
+  const count = overlay.original.positions.length / 3;
+  assert.deepEqual([overlay.differences.length, overlay.evidence.length], [count, count]);
+  assert.ok(overlay.differences.every((difference) => difference < 0.01), "it lies elsewhere");
+  assert.ok(overlay.evidence.reduce((sum, value) => sum + value, 0) / count > 0.1, "it speaks for no mark");
+  for (const words of ["Your mark was found.", "data:image/png;base64,", "&lt;b&gt;.glb", "meshmark extract it"]) {
+    assert.ok(comparison.statement.includes(words), words);
+  }
+  assert.ok(!("overlay" in informed.compare(embedding.model, original, key)));
+  assert.equal(informed.compare(embedding.model, original, new Uint8Array(32).fill(6), { overlay: true }).overlay.evidence, null);
+});
+
 test("a suspect that is no glTF is read, and what follows the key is told where it is asked for", () => {
   const positions = new Float64Array([0, 0, 0, 1, 0, 0, 0, 1, 0]);
   const triangles = new Uint32Array([0, 1, 2]);

@@ -137,10 +137,10 @@ test("an embedding foretells what its mark survives, each kind of change once", 
   await meshmark.init();
   const embed = (options) => meshmark.embed(meshmark.demoModel(), "FORE", new Uint8Array(32).fill(5), options).report.forecast;
   const both = embed({});
-  assert.deepEqual(both.map(({ attack }) => attack).sort(), ["crop", "noise", "none", "quantize", "simplify-30", "simplify-70", "smooth", "web"]);
+  assert.deepEqual(both.map(({ attack }) => attack).sort(), ["crop", "noise", "none", "quantize", "simplify-30", "simplify-50", "simplify-70", "smooth", "web"]);
   assert.equal(both.find(({ attack }) => attack === "none").level, "green");
   const ring = embed({ carriers: ["ring"] }); // connectivity alone: other triangles, another connectivity
-  assert.deepEqual(ring.filter(({ level }) => level === "red").map(({ attack }) => attack), ["simplify-30", "simplify-70"]);
+  assert.deepEqual(ring.filter(({ level }) => level === "red").map(({ attack }) => attack), ["simplify-30", "simplify-50", "simplify-70"]);
 });
 
 test("a key of another length is refused", async () => {

@@ -2,7 +2,7 @@
 import ts from "typescript";
 
 const { TypeFlags } = ts;
-const TYPED_ARRAYS = ["Uint8Array", "Uint32Array", "Float64Array"];
+const TYPED_ARRAYS = ["Uint8Array", "Uint32Array", "Float32Array", "Float64Array"];
 
 /** The functions and types that a declaration file exports. */
 export function readContract(file) {

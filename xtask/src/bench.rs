@@ -20,7 +20,7 @@ pub fn bench(log: &mut Log, runs: u32) -> Result<()> {
     if path(STAGES).exists() {
         fs_err::remove_dir_all(path(STAGES))?;
     }
-    let mut stages = command("cargo bench --bench pipeline --target-dir target");
+    let mut stages = command("cargo bench --bench * --target-dir target");
     log.run(stages.env("CRITERION_HOME", path(STAGES)), REMEDY)?;
 
     let rustc = "rustc --version";

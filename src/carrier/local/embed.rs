@@ -3,12 +3,13 @@
 use super::ball::{Ball, RADIUS, STEPS, lattice, widths, windows_of};
 use super::choice::choose;
 use super::problem::{Problem, ROWS_OF_PLACE};
-use crate::carrier::Host;
 use crate::carrier::qim::curvature;
 use crate::carrier::solid::freedom::{freedoms, typical};
+use crate::carrier::solid::held::{Held, held};
 use crate::carrier::solid::lattice::Lattice;
 use crate::carrier::solid::quantizer::{cosine, phase};
 use crate::carrier::solid::window::Window;
+use crate::carrier::{self, Carrier, CarrierError, Chosen, Host, Needs};
 use crate::code::{Codeword, Symbol};
 use crate::detection::Statistic;
 use crate::geometry::places::{Areas, areas};
@@ -25,9 +26,14 @@ const LEAST_WEIGHT: f64 = 0.02;
 const CLAMP: f64 = 4.0;
 /// Weight of what holds the places, in mean weights of a window.
 const HOLD: f64 = 30.0;
+/// What an error in a window of SOLID's costs beside one in a ball's.
+const HOLD_SOLID: f64 = 1.0;
 /// The step, in pitches, at the strong strength: 0.08 % of the diagonal. Others are in proportion.
 const STRONG_STEP: f64 = 0.1;
 const STRONG: f64 = 0.0008;
+
+/// What a mark has to reach, in nats: twice what is found, and what is charged. SOLID's without a payload has to reach as much.
+const SURE: f64 = 45.0;
 
 /// A mark in balls.
 #[derive(Debug)]
@@ -41,10 +47,12 @@ pub struct Embedded {
     pub exponent: f64,
 }
 
-/// Gives a host the mark of a key, without a payload; `None` where it has no places that come back.
+/// Gives a host the mark of a key, without a payload, and leaves windows nearly as they are in which SOLID holds a mark of that key: as
+/// it chose. `None` where the host has no places that come back.
 pub fn embed(
     host: &Host,
     key: &Key,
+    chosen: &[Chosen],
     progress: &mut dyn Progress,
 ) -> Result<Option<Embedded>, Cancelled> {
     step(progress, Stage::Embed, 0.0)?;
@@ -55,8 +63,8 @@ pub fn embed(
     }
     let freedom = freedoms(&mesh, &boundary, host, CLAMP);
     let typical = typical(&freedom);
-    let share = if host.hidden { typical } else { 1.0 };
-    let rms_rel = share * host.rms_rel;
+    let unseen = if host.hidden { typical } else { 1.0 };
+    let rms_rel = host.share * unseen * host.rms_rel;
     let ideal = STRONG_STEP * rms_rel / STRONG;
     let number = STEPS.partition_point(|step| *step > 1.19 * ideal);
     let embedder = Embedder {
@@ -64,10 +72,49 @@ pub fn embed(
         limit: rms_rel * diagonal(&mesh.positions),
         diagonal: diagonal(&mesh.positions),
         freedom,
+        typical,
         mesh: &mesh,
         step: STEPS[number.min(STEPS.len() - 1)],
+        held: held(host.mesh, key, chosen),
     };
     embedder.embed(balls, key, progress).map(Some)
+}
+
+/// The same as a carrier does it. Where the host has too few places that come back, that is refused.
+#[cfg(feature = "local")]
+pub fn embed_above(
+    host: &Host,
+    key: &Key,
+    chosen: &[Chosen],
+    progress: &mut dyn Progress,
+) -> Result<carrier::Embedded, CarrierError> {
+    let (displacement, exponent) = match embed(host, key, chosen, progress)? {
+        Some(embedded) => (embedded.displacement, embedded.exponent),
+        None => (Vec::new(), 0.0),
+    };
+    if exponent < SURE {
+        return Err(CarrierError::TooWeak {
+            carrier: Carrier::Local,
+            reached: exponent,
+            needed: SURE,
+        });
+    }
+    Ok(carrier::Embedded {
+        displacement,
+        carrier: Carrier::Local,
+        exponent,
+        needs: Needs {
+            sturdy: SURE,
+            payload: f64::INFINITY,
+            presence: SURE,
+        },
+        chosen: Vec::new(),
+    })
+}
+
+/// Whether a mesh has places that come back.
+pub fn suits(mesh: &Mesh) -> bool {
+    !choose(&oriented(mesh).0).is_empty()
 }
 
 struct Embedder<'a> {
@@ -76,10 +123,14 @@ struct Embedder<'a> {
     mesh: &'a Mesh,
     diagonal: f64,
     freedom: Vec<f64>,
+    /// RMS freedom.
+    typical: f64,
     /// RMS limit in scene units.
     limit: f64,
     /// In pitches.
     step: f64,
+    /// Where SOLID holds a mark.
+    held: Vec<Held>,
 }
 
 /// A ball, its lattice, and the windows in it.
@@ -111,7 +162,7 @@ impl Embedder<'_> {
         } in &marked
         {
             let placement = ball.placement(lattice, DVec3::ONE);
-            problem.add_windows(ball.place.point, &placement, windows);
+            problem.add_ball(ball.place.point, &placement, windows);
         }
         let diagonal = problem.diagonal();
         let num_windows = diagonal.len();
@@ -119,7 +170,9 @@ impl Embedder<'_> {
         for marked in &marked {
             problem.add_place(&marked.ball.place, mean.sqrt());
         }
-        let num_held = ROWS_OF_PLACE * marked.len();
+        let held_weights = self.hold_windows(&mut problem);
+        let num_of_places = ROWS_OF_PLACE * marked.len();
+        let num_rows = num_windows + num_of_places + held_weights.len();
         let mut displacement = vec![DVec3::ZERO; self.mesh.positions.len()];
         let (mut best, mut best_agreement) = (displacement.clone(), f64::NEG_INFINITY);
         let mut ridge = mean;
@@ -140,11 +193,12 @@ impl Embedder<'_> {
             };
             let mut weights: Vec<f64> = errors.iter().zip(windows).map(weigh).collect();
             let mean_weight = weights.iter().sum::<f64>() / num_windows as f64;
-            weights.extend(std::iter::repeat_n(HOLD * mean_weight, num_held));
+            weights.extend(std::iter::repeat_n(HOLD * mean_weight, num_of_places));
+            weights.extend(&held_weights);
             let now = problem.times(&displacement).into_iter();
             let goals = now.zip(&errors).map(|(now, error)| now + error * self.step);
             let mut goals: Vec<f64> = goals.collect();
-            goals.resize(num_windows + num_held, 0.0);
+            goals.resize(num_rows, 0.0);
             let tries = if round == 0 { 4 } else { 1 };
             for _ in 0..tries {
                 displacement = problem.solve(&goals, &weights, ridge);
@@ -171,6 +225,18 @@ impl Embedder<'_> {
         })
     }
 
+    /// Adds the rows that hold SOLID's windows. Each weighs as if an error in SOLID's steps were one in steps of a ball's.
+    fn hold_windows(&self, problem: &mut Problem) -> Vec<f64> {
+        let mut weights = Vec::new();
+        for held in &self.held {
+            problem.add_windows(&held.triangles, &held.placement, &held.windows);
+            let steps = self.step / held.step;
+            let weigh = |window: &Window| HOLD_SOLID * window.weight * steps * steps;
+            weights.extend(held.windows.iter().map(weigh));
+        }
+        weights
+    }
+
     fn moved(&self, displacement: &[DVec3]) -> Mesh {
         let positions = self.mesh.positions.iter().zip(displacement);
         self.mesh
@@ -178,8 +244,9 @@ impl Embedder<'_> {
     }
 
     fn keep_to_limits(&self, displacement: &mut [DVec3]) {
-        for d in displacement.iter_mut() {
-            *d = d.clamp_length_max(CLAMP * self.limit);
+        for (d, freedom) in displacement.iter_mut().zip(&self.freedom) {
+            let most = CLAMP * self.limit * (freedom / self.typical).min(1.0);
+            *d = d.clamp_length_max(most);
         }
         let (leeway, admissible) = (self.host.leeway, &self.host.admissible);
         admissible.project(displacement);

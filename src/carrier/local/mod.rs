@@ -21,5 +21,7 @@ mod measurement;
 mod problem;
 mod reading;
 
-pub use embed::{Embedded, embed};
+#[cfg(feature = "local")]
+pub use embed::embed_above;
+pub use embed::{Embedded, embed, suits};
 pub use measurement::Measurement;

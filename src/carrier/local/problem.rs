@@ -1,8 +1,8 @@
 //! The linear problem of one round: which displacement takes every window to its lattice, and leaves the places where they are, at the
 //! least cost.
 //!
-//! As SOLID's, in the dual and by conjugate gradients; but windows of several lattices have a part in it, and what makes the places is
-//! held by rows of its own, whose goals are 0 and whose weights are large.
+//! As SOLID's, in the dual and by conjugate gradients; but windows of several lattices have a part in it. What makes the places is
+//! held by rows of its own, whose goals are 0 and whose weights are large; so are SOLID's windows, where they hold a mark.
 
 use super::ball::{MARGIN, RADIUS};
 use crate::carrier::solid::lattice::{self, Placement, for_each_near};
@@ -47,14 +47,26 @@ impl<'a> Problem<'a> {
     }
 
     /// Adds a row for each window of a ball.
-    pub fn add_windows(&mut self, centre: DVec3, placement: &Placement, active: &[Window]) {
+    pub fn add_ball(&mut self, centre: DVec3, placement: &Placement, active: &[Window]) {
+        let reach = (RADIUS + MARGIN) * placement.pitch;
+        let triangles: Vec<[u32; 3]> = triangles_near(self.mesh, centre, reach).collect();
+        self.add_windows(&triangles, placement, active);
+    }
+
+    /// Adds a row for each window, of those that see so many triangles.
+    pub fn add_windows(
+        &mut self,
+        triangles: &[[u32; 3]],
+        placement: &Placement,
+        active: &[Window],
+    ) {
         let pitch = placement.pitch;
         let quadrature = Quadrature::new(EDGE_OF_WINDOW * pitch);
         let numbers = active.iter().zip(0usize..);
         let row_of: BTreeMap<[i32; 3], usize> =
             numbers.map(|(window, row)| (window.index, row)).collect();
         let mut rows: Vec<BTreeMap<u32, DVec3>> = vec![BTreeMap::new(); active.len()];
-        for triangle in triangles_near(self.mesh, centre, (RADIUS + MARGIN) * pitch) {
+        for &triangle in triangles {
             let (area, samples) = quadrature.samples(self.mesh.corners(triangle));
             let area = area / (pitch * pitch * pitch);
             for sample in samples {

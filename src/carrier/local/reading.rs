@@ -1,6 +1,6 @@
 //! What a key reads in the places of a suspect.
 //!
-//! Every place, frame, pitch, step and sign of the axes is looked at by the pilots alone; the best are refined by the pilots alone; and of
+//! Every place, frame, pitch, step and sign of the axes is looked at by the pilots alone; the best are refined by the pilots alone, in two stages; and of
 //! the best of each class the other symbols testify: of the best ball, of the best two, and so on. The pilots' own agreement is never
 //! reported, so thousands of candidates cost nothing (docs/SECURITY.md, 9).
 
@@ -9,7 +9,7 @@ use super::measurement::Measurement;
 use crate::carrier::solid::cluster::Cluster;
 use crate::carrier::solid::lattice::{Lattice, Placement};
 use crate::carrier::solid::quantizer::{cosine, phase};
-use crate::carrier::solid::refine::{View, refine};
+use crate::carrier::solid::refine::{View, approach, refine};
 use crate::carrier::solid::window::Window;
 use crate::carrier::{Hypothesis, Reading};
 use crate::code::{SoftSymbol, Symbol};
@@ -25,12 +25,15 @@ const PITCHES: Range<f64> = 0.03..0.075;
 const GAP: f64 = 0.02;
 /// A ball with fewer windows says too little.
 const FEWEST_WINDOWS: usize = 24;
-/// Candidates that are refined.
-const REFINED: usize = 60;
+/// Candidates that are refined: many with little effort, and the best of these with all.
+const STAGES: [(usize, Refine); 2] = [(240, approach), (40, refine)];
 /// What refining gains by chance, in nats.
 const BY_CHANCE: f64 = 7.0;
 /// Balls that testify together, at most: as many sets are tested, each the one before and one ball more.
 const MOST_TOGETHER: usize = 4;
+
+/// How a view is taken to where its pilots agree best nearby.
+type Refine = fn(&dyn Fn(&View) -> Vec<Window>, &View, &Lattice, f64) -> View;
 
 /// A ball that may hold a mark.
 struct Candidate {
@@ -56,12 +59,14 @@ impl Measurement {
     ) -> Result<Reading, Cancelled> {
         let lattices: Vec<Lattice> = (0..CLASSES).map(lattice).collect();
         let (mut candidates, num_addresses) = self.candidates(&lattices, progress)?;
-        candidates.truncate(REFINED);
-        for candidate in &mut candidates {
-            let lattice = &lattices[candidate.ball.class()];
-            self.refine(candidate, lattice);
+        for (most, refine) in STAGES {
+            candidates.truncate(most);
+            for candidate in &mut candidates {
+                let lattice = &lattices[candidate.ball.class()];
+                self.refine(candidate, lattice, refine);
+            }
+            best_first(&mut candidates);
         }
-        best_first(&mut candidates);
         let mut chosen: Vec<&Candidate> = Vec::new();
         for candidate in &candidates {
             let is_other = |other: &&Candidate| other.ball.class() != candidate.ball.class();
@@ -143,7 +148,7 @@ impl Measurement {
     }
 
     /// Takes a candidate to where its pilots agree best nearby.
-    fn refine(&self, candidate: &mut Candidate, lattice: &Lattice) {
+    fn refine(&self, candidate: &mut Candidate, lattice: &Lattice, refine: Refine) {
         let ball = candidate.ball;
         let clusters = ball.clusters(&self.areas);
         let start = self.windows(&ball, &clusters, lattice, &candidate.placement);

@@ -72,7 +72,7 @@ pub fn embed_in_frame(
     let ground = ground(host).ok_or_else(|| none(0))?;
     step(progress, Stage::Embed, 0.0)?;
     let candidates: Vec<f64> = pitches(ground.area(), AREAS_TO_EMBED).collect();
-    let whole = host.rms_rel * diagonal(&ground.mesh.positions);
+    let whole = host.share * host.rms_rel * diagonal(&ground.mesh.positions);
     let needs = match is_determined(&ground.pose) {
         true => NEEDS,
         false => NEEDS_SCANNED,

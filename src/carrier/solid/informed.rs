@@ -42,6 +42,8 @@ pub struct Place {
     pub response: f64,
     /// By how much of a step the embedder had to move it for a symbol of -1, and of +1: -1/2 to 1/2.
     pub errors: [f64; 2],
+    /// Its centre, in the original's scene units.
+    pub centre: DVec3,
 }
 
 /// One way of reading.
@@ -52,6 +54,8 @@ pub struct Way {
     pub ln_num_tests: f64,
     /// Which of the ways in which the suspect may lie on the host it is of.
     pub list: usize,
+    /// Of the windows, in the original's scene units.
+    pub radius: f64,
 }
 
 /// What is seen of a suspect that lies on the original in one way, by the radius of windows.
@@ -141,9 +145,9 @@ impl<'a> Frames<'a> {
                 }
                 laid.push(Laid {
                     frame,
+                    placement,
                     response: Response::new(frame, &placement, &active, self.host.hidden),
                     active,
-                    pitch,
                     ln_num_ways: libm::log((candidates.len() * WAYS) as f64) + frame.ln_num_shares,
                 });
             }
@@ -163,7 +167,7 @@ pub struct Reader<'a> {
 
 struct Laid<'a> {
     frame: &'a Frame,
-    pitch: f64,
+    placement: Placement,
     active: Vec<Window>,
     response: Response<'a>,
     ln_num_ways: f64,
@@ -183,7 +187,7 @@ impl Reader<'_> {
                 let done = (number * seen.len() + list) as f64;
                 let all = (self.laid.len() * seen.len()) as f64;
                 step(progress, Stage::Test, done / all)?;
-                let observations = observe(RADIUS * laid.pitch * laid.frame.pose.size);
+                let observations = observe(laid.radius());
                 let observations = laid.frame.own(observations);
                 if observations.is_empty() {
                     continue;
@@ -193,9 +197,10 @@ impl Reader<'_> {
                     let responses = evidence.responses(noise);
                     for step in STEPS {
                         let way = Way {
-                            places: laid.places(&self.lattice, &responses, step / laid.pitch),
+                            places: laid.places(&self.lattice, &responses, step),
                             ln_num_tests: laid.ln_num_ways + libm::log(seen.len() as f64),
                             list,
+                            radius: laid.radius(),
                         };
                         if visit(way) {
                             return Ok(());
@@ -209,8 +214,14 @@ impl Reader<'_> {
 }
 
 impl Laid<'_> {
-    /// The windows with their errors at a step, in lattice coordinates.
+    /// Of the windows, in scene units.
+    fn radius(&self) -> f64 {
+        RADIUS * self.placement.pitch * self.frame.pose.size
+    }
+
+    /// The windows with their errors at a step, in the frame's units.
     fn places(&self, lattice: &Lattice, responses: &[f64], step: f64) -> Vec<Place> {
+        let step = step / self.placement.pitch;
         let place = |(window, &response): (&Window, &f64)| {
             let (dither, symbol) = lattice.at(window.index);
             let phase = phase(window.flux / step, dither);
@@ -222,10 +233,17 @@ impl Laid<'_> {
                 symbol,
                 response,
                 errors: [error(0.5), error(0.0)],
+                centre: centre(&self.frame.pose, &self.placement, window.index),
             }
         };
         self.active.iter().zip(responses).map(place).collect()
     }
+}
+
+/// Where a window of a lattice in a frame is, in scene units.
+pub(super) fn centre(pose: &Pose, placement: &Placement, index: [i32; 3]) -> DVec3 {
+    let index = DVec3::from_array(index.map(f64::from));
+    pose.axes * placement.point(index) * pose.size + pose.centre
 }
 
 impl Frame {
@@ -411,6 +429,7 @@ mod tests {
             admissible: &admissible,
             rms_rel: 0.0004,
             hidden: true,
+            share: 1.0,
             on_top: false,
         };
         let observations: Vec<Observation> = scattered(&mesh, 2000, 1)

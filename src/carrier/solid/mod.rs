@@ -19,6 +19,7 @@
 //! | `embed` | embedding: which pitch, step and limit hold the mark |
 //! | `objects` | embedding: each object of a scene in its own frame |
 //! | `again` | embedding: another message where one was embedded before |
+//! | `held` | embedding: windows that another carrier leaves as they are |
 //! | `store` | a surface's clusters in few bytes |
 //! | `strength` | smoothings that may have happened, and what lies between those that are undone |
 //! | `surface`, `surfaces` | detecting: what a suspect is, and may have been |
@@ -40,6 +41,7 @@ mod field;
 mod frame;
 pub(super) mod freedom;
 mod grid;
+pub(super) mod held;
 mod informed;
 pub(super) mod lattice;
 mod lists;

@@ -4,7 +4,7 @@
 //! by the affine map that leaves least, and what is left in windows that are whole is what the embedder moved them by, and noise.
 
 use super::cluster::{Cluster, clusters};
-use super::informed::{Frames, Place, Way};
+use super::informed::{Frames, Place, Way, centre};
 use super::lattice::{Lattice, Placement, RADIUS, for_each_near};
 use super::pitch::PITCHES;
 use super::quantizer::{STEPS, phase};
@@ -108,12 +108,17 @@ impl Recorded {
                         continue;
                     };
                     for step in STEPS {
-                        let step = step / placement.pitch;
-                        let places = laid.places(&differences, &lattice, step);
                         let way = Way {
-                            places,
+                            places: laid.places(
+                                &differences,
+                                &lattice,
+                                &frame.pose,
+                                &placement,
+                                step,
+                            ),
                             ln_num_tests,
                             list,
+                            radius: RADIUS * placement.pitch * frame.pose.size,
                         };
                         if visit(way) {
                             return;
@@ -284,8 +289,16 @@ impl RecordedWindows {
             .ok()
     }
 
-    /// The windows with their errors at a step, in lattice coordinates.
-    fn places(&self, differences: &[f64], lattice: &Lattice, step: f64) -> Vec<Place> {
+    /// The windows with their errors at a step, in the frame's units.
+    fn places(
+        &self,
+        differences: &[f64],
+        lattice: &Lattice,
+        pose: &Pose,
+        placement: &Placement,
+        step: f64,
+    ) -> Vec<Place> {
+        let step = step / placement.pitch;
         let place = |(window, difference): (&Window, &f64)| {
             let (dither, symbol) = lattice.at(window.index);
             let phase = phase(window.flux / step, dither);
@@ -301,6 +314,7 @@ impl RecordedWindows {
                 symbol,
                 response,
                 errors: [error(0.5), error(0.0)],
+                centre: centre(pose, placement, window.index),
             }
         };
         self.windows.iter().zip(differences).map(place).collect()

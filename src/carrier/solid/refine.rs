@@ -19,10 +19,25 @@ type Nudge = [f64; FREEDOMS];
 
 /// A difference quotient's step.
 const EPSILON: f64 = 0.006;
-/// Nudges that are tried in the linear model, and those that are followed uphill.
-const TRIED: usize = 3000;
-const FOLLOWED: usize = 24;
-const CLIMBS: usize = 15;
+/// How much is tried about a view.
+struct Effort {
+    /// Nudges in the linear model, and those of them that are followed uphill.
+    tried: usize,
+    followed: usize,
+    climbs: usize,
+}
+
+const WHOLE: Effort = Effort {
+    tried: 3000,
+    followed: 24,
+    climbs: 15,
+};
+/// A sixth of that: enough to tell which of many views are worth the whole.
+const QUICK: Effort = Effort {
+    tried: 500,
+    followed: 5,
+    climbs: 8,
+};
 /// How far a climb goes along each freedom, at most: nine times as far as its widest nudges are tried, so that no attack that was
 /// ever read again comes near. Where fluxes hardly change, the linear model would otherwise lead anywhere: to lattices of no
 /// pitch, and of any number of points.
@@ -90,9 +105,23 @@ pub fn refine(
     lattice: &Lattice,
     step: f64,
 ) -> View {
-    let wide = climb(see, start, lattice, step, 0.007, [0.3, 0.8, 1.6]);
-    climb(see, &wide, lattice, step, 0.003, [0.25, 0.6, 1.2])
+    let wide = climb(see, start, lattice, step, &WHOLE, WIDE);
+    climb(see, &wide, lattice, step, &WHOLE, (0.003, [0.25, 0.6, 1.2]))
 }
+
+/// The same with little effort, to tell whether a view is worth more.
+pub fn approach(
+    see: &dyn Fn(&View) -> Vec<Window>,
+    start: &View,
+    lattice: &Lattice,
+    step: f64,
+) -> View {
+    climb(see, start, lattice, step, &QUICK, WIDE)
+}
+
+/// Sizes of nudges, in the units of a view, and their shares.
+type Sizes = (f64, [f64; 3]);
+const WIDE: Sizes = (0.007, [0.3, 0.8, 1.6]);
 
 /// Pilots that a processor works on at once.
 const LANES: usize = 4;
@@ -115,12 +144,12 @@ fn climb(
     start: &View,
     lattice: &Lattice,
     step: f64,
-    spread: f64,
-    spreads: [f64; 3],
+    effort: &Effort,
+    (spread, spreads): Sizes,
 ) -> View {
     let model = Model::new(see, start, lattice, step / start.placement.pitch);
     let mut random = Random::new(0x50_4f_53_45);
-    let nudges: Vec<(f64, Nudge)> = (0..TRIED)
+    let nudges: Vec<(f64, Nudge)> = (0..effort.tried)
         .map(|number| {
             let size = if number == 0 {
                 0.0
@@ -138,10 +167,10 @@ fn climb(
     let curvature = model.curvature();
     let best = order
         .iter()
-        .take(FOLLOWED)
+        .take(effort.followed)
         .map(|&(_, number)| nudges[number as usize].1)
         .chain([nudges[0].1])
-        .map(|nudge| model.uphill(nudge, &curvature))
+        .map(|nudge| model.uphill(nudge, &curvature, effort.climbs))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or(*start, |(_, nudge)| start.nudged(&nudge))
 }
@@ -229,8 +258,13 @@ impl Model {
     }
 
     /// Follows the gradient, scaled by the curvature, for a few steps.
-    fn uphill(&self, mut nudge: Nudge, curvature: &[Nudge; FREEDOMS]) -> (f64, Nudge) {
-        for _ in 0..CLIMBS {
+    fn uphill(
+        &self,
+        mut nudge: Nudge,
+        curvature: &[Nudge; FREEDOMS],
+        climbs: usize,
+    ) -> (f64, Nudge) {
+        for _ in 0..climbs {
             let mut gradient = [0.0; FREEDOMS];
             for some in &self.0 {
                 let sines = some.phases(&nudge).map(|phase| cosine(phase - 0.25));

@@ -87,7 +87,7 @@ fn a_blind_payload_is_charged_its_guess_its_tests_and_its_carriers() {
     near(found.details.agreement, 1.0);
     let own = -exponent(200, 1.0) + 48.0 * LN_2 + LN_WAYS + ln_tests(false);
     near(found.details.carriers[1].ln_p, own);
-    near(found.details.ln_p, own + LN_2);
+    near(found.details.ln_p, own + LN_CARRIERS);
     assert_eq!(found.details.carriers[1].owned_addresses, 200);
     assert_eq!(found.details.carriers[0].owned_addresses, 0);
     assert_eq!(found.details.carriers[1].addresses, 800);
@@ -99,7 +99,7 @@ fn an_expected_payload_is_charged_five_tests_and_no_guess() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(200, 1.0) + LN_WAYS + ln_tests(true) + LN_2,
+        -exponent(200, 1.0) + LN_WAYS + ln_tests(true) + LN_CARRIERS,
     );
 }
 
@@ -136,7 +136,7 @@ fn the_loudest_way_speaks() {
         });
         near(
             found.details.ln_p,
-            of_first.ln_p() + 48.0 * LN_2 + LN_WAYS + ln_tests(false) + LN_2,
+            of_first.ln_p() + 48.0 * LN_2 + LN_WAYS + ln_tests(false) + LN_CARRIERS,
         );
         assert_eq!(found.details.carriers[1].owned_addresses, 180);
     }
@@ -155,7 +155,7 @@ fn pilots_alone_say_that_a_mark_is_there() {
         .count();
     near(
         partly.details.ln_p,
-        -exponent(num_pilots, 1.0) + LN_WAYS + ln_tests(false) + LN_2,
+        -exponent(num_pilots, 1.0) + LN_WAYS + ln_tests(false) + LN_CARRIERS,
     );
     near(partly.details.agreement, 0.0);
 }
@@ -164,7 +164,7 @@ fn pilots_alone_say_that_a_mark_is_there() {
 #[test]
 fn a_mark_without_a_payload_is_present() {
     for expected in [None, Some(payload(5))] {
-        let charge = LN_WAYS + ln_tests(expected.is_some()) + LN_2;
+        let charge = LN_WAYS + ln_tests(expected.is_some()) + LN_CARRIERS;
         let least = ((-LN_P_FOUND + charge) / 300.0).sqrt();
         for (share, verdict) in [
             (least - 1e-9, Verdict::Partial),
@@ -199,7 +199,8 @@ fn a_trace_begins_at_one_in_ten_thousand() {
         .iter()
         .filter(|soft| soft.symbol == Symbol::Pilot)
         .count();
-    let least = ((-LN_P_TRACE + LN_WAYS + ln_tests(false) + LN_2) / num_pilots as f64).sqrt();
+    let least =
+        ((-LN_P_TRACE + LN_WAYS + ln_tests(false) + LN_CARRIERS) / num_pilots as f64).sqrt();
     for (share, verdict) in [
         (least - 1e-9, Verdict::None),
         (least + 1e-9, Verdict::Partial),
@@ -212,7 +213,7 @@ fn a_trace_begins_at_one_in_ten_thousand() {
 /// The limit of what is found, from both sides, and that a payload is named on one alone.
 #[test]
 fn a_payload_is_found_at_one_in_a_billion() {
-    let charge = LN_WAYS + ln_tests(false) + LN_2 + LN_PAYLOADS;
+    let charge = LN_WAYS + ln_tests(false) + LN_CARRIERS + LN_PAYLOADS;
     let least = ((-LN_P_FOUND + charge) / 300.0).sqrt();
     for (share, verdict) in [
         (least - 1e-9, Verdict::Partial),
@@ -241,13 +242,13 @@ fn the_louder_carrier_names_the_payload() {
         let found = judge(None).conclude(&readings);
         assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
         assert_eq!(found.details.carriers[quiet].number, None);
-        assert_eq!(found.details.carriers[quiet].name, Carrier::ALL[quiet]);
+        assert_eq!(found.details.carriers[quiet].name, Carrier::STANDARD[quiet]);
     }
 }
 
 #[test]
 fn another_payload_is_partly_and_named_where_chance_is_excluded() {
-    let charge = LN_WAYS + ln_tests(true) + LN_2 + LN_PAYLOADS;
+    let charge = LN_WAYS + ln_tests(true) + LN_CARRIERS + LN_PAYLOADS;
     let least = |ln_p: f64| ((-ln_p + charge) / 300.0).sqrt();
     let [trace, found] = [LN_P_TRACE, LN_P_FOUND].map(least);
     for (share, names) in [
@@ -299,7 +300,7 @@ fn an_expected_payload_is_fitted_where_none_is_decoded() {
     assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
     near(
         found.details.ln_p,
-        -exponent(num_parities, share) + LN_WAYS + ln_tests(true) + LN_2,
+        -exponent(num_parities, share) + LN_WAYS + ln_tests(true) + LN_CARRIERS,
     );
     near(found.details.agreement, share * num_parities as f64 / 300.0);
     // Its neighbours share most parities, and do not have the check bits that fit best.
@@ -364,4 +365,69 @@ fn nothing_to_read_cannot_be_checked() {
     let read = judge(None).conclude(&Readings::default());
     assert_eq!((read.verdict, read.number), (Verdict::CannotCheck, None));
     assert_eq!((read.details.ln_p, read.details.agreement), (0.0, 0.0));
+}
+
+/// The shares of all carriers are one probability, and what the judge charges follows them.
+#[test]
+fn the_shares_of_carriers_add_up_to_one() {
+    let shares: f64 = Carrier::ALL.into_iter().map(Carrier::share).sum();
+    near(shares, 1.0);
+    for carrier in Carrier::STANDARD {
+        near(ln_carriers(carrier), LN_CARRIERS);
+    }
+    near(ln_carriers(Carrier::Local), libm::log(16.0));
+}
+
+/// What LOCAL reads in balls that agree by `share`, each set one ball more.
+fn local(num: usize, share: f64) -> Option<(Carrier, Reading)> {
+    let ball = |_| {
+        let mut symbols = places(num);
+        symbols.retain(|soft| soft.symbol != Symbol::Pilot);
+        for soft in &mut symbols {
+            soft.value = share * Codeword::Presence.sign(soft.symbol);
+        }
+        symbols
+    };
+    let sets = (1..=2).map(|count| (0..count).flat_map(ball).collect());
+    Some((Carrier::Local, reading(sets.collect(), num)))
+}
+
+/// LOCAL says whose a model is: one test of each way, and a sixteenth of the probability. Its places are named.
+#[test]
+fn local_alone_is_present() {
+    for expected in [None, Some(payload(5))] {
+        let found = judge(expected).conclude_with(&Readings::default(), local(60, 1.0));
+        assert_eq!((found.verdict, found.number), (Verdict::Present, None));
+        let reason = found.reason.as_deref().unwrap_or_default();
+        assert!(reason.contains("LOCAL, in 2 places"), "{reason}");
+        assert_eq!(found.caution, None);
+        let own = &found.details.carriers[2];
+        assert_eq!((own.name, own.number), (Carrier::Local, None));
+        near(own.ln_p, -exponent(own.owned_addresses, 1.0) + LN_WAYS);
+        near(found.details.ln_p, own.ln_p + libm::log(16.0));
+    }
+}
+
+/// Parities that all say -1 are no payload of LOCAL's, and a payload that another carrier reads stays the answer.
+#[test]
+fn local_takes_no_payload_away() {
+    let readings = ring(marked(200, payload(5), 1.0, 1.0), 800);
+    let found = judge(None).conclude_with(&readings, local(400, 1.0));
+    assert_eq!((found.verdict, found.number), (Verdict::Found, Some(5)));
+    assert_eq!(found.reason, None);
+}
+
+/// Where LOCAL was read and says nothing, the answer is the same as without.
+#[test]
+fn local_that_is_not_there_changes_nothing() {
+    for readings in [
+        Readings::default(),
+        ring(places(40), 800),
+        ring(marked(200, payload(5), 1.0, 1.0), 800),
+    ] {
+        let [without, mut with] =
+            [None, local(60, 0.0)].map(|local| judge(None).conclude_with(&readings, local));
+        with.details.carriers.pop();
+        assert_eq!(with, without);
+    }
 }

@@ -6,9 +6,8 @@ use meshmark::internals::document::{
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::oracle::Oracle;
-use crate::support::gltf_builder::{
-    Built, Component, GltfBuilder, Layout, Packing, glb, primitive,
-};
+use crate::support::glb::glb;
+use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 
 const TRIANGLE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 

@@ -3,9 +3,8 @@
 use meshmark::internals::document::{Document, DocumentError, Files, MAX_UNBACKED};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::gltf_builder::{
-    Built, Component, GltfBuilder, Layout, Packing, glb, primitive,
-};
+use crate::support::glb::glb;
+use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 
 const POINTS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 

@@ -3,6 +3,7 @@
 //! Numbers are given as they are stored; JSON fragments are given as text. Everything is put
 //! together in the order of the calls, so the same calls give the same bytes.
 
+use super::glb::glb;
 use std::fmt::Write;
 
 use base64::Engine;
@@ -360,21 +361,6 @@ impl GltfBuilder {
 pub fn primitive(position: usize, indices: Option<usize>, mode: u32) -> String {
     let indices = indices.map_or(String::new(), |indices| format!(r#","indices":{indices}"#));
     format!(r#"{{"attributes":{{"POSITION":{position}}}{indices},"mode":{mode}}}"#)
-}
-
-/// A GLB file of the given chunks.
-pub fn glb(chunks: &[([u8; 4], Vec<u8>)]) -> Vec<u8> {
-    let mut body = Vec::new();
-    for (kind, data) in chunks {
-        body.extend_from_slice(&(data.len() as u32).to_le_bytes());
-        body.extend_from_slice(kind);
-        body.extend_from_slice(data);
-    }
-    let mut file = b"glTF".to_vec();
-    file.extend_from_slice(&2_u32.to_le_bytes());
-    file.extend_from_slice(&(body.len() as u32 + 12).to_le_bytes());
-    file.extend_from_slice(&body);
-    file
 }
 
 fn position_accessor(layout: Layout, points: &[[f64; 3]], base: &str, sparse: &str) -> String {

@@ -1,2 +1,4 @@
+pub mod compress;
 pub mod fixtures;
+pub mod glb;
 pub mod gltf_builder;

@@ -1,16 +1,18 @@
 /** Check: a suspect and a key in, one sentence out; several suspects or keys, and a line for each. */
 import type { DetailedExtraction, Inspection, Tracing } from "meshmark";
 import { answersList, chargeWords, isFound, type Line } from "./answers";
+import { CheckStage } from "./check-stage";
+import { answers, compared, comparisonRows, headlineOf, type Compared } from "./comparing";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
+import { GivenField, isRecord, type Given } from "./given";
 import { incompleteKeyField, keySource, severalKeys, type KeySource, type NamedKey } from "./key-form";
 import { readLedger, type Ledger } from "./ledger";
-import { isEvidence, renamed, type Found, type Model } from "./model";
+import { isEvidence, renamed, type Found, type Model, type NamedFile } from "./model";
 import { actions, card, carrierTable, chance, details, flag, note, numbers, readingRows } from "./outcome";
 import { evidenceOf, read, withKey, type Answer } from "./reading";
-import { checkReport, checksReport } from "./report";
+import { checkReport, checksReport, comparisonReport } from "./report";
 import { save, saveJson } from "./save";
-import { Stage } from "./stage";
 import { tagProblem, watchTag } from "./tag";
 import type { Task } from "./task";
 import { View } from "./view";
@@ -19,6 +21,8 @@ import { homes, isMark, plain, VERDICTS } from "./words";
 const DO_NOT_PASS_ON = "Keep these figures to yourself. They follow your key: whoever gets enough of them, for models of their own making, can make one in which your mark is found.";
 
 const PROVES = "It does not say who made the model first, nor who passed it on: keep your dated original and the report of marking it.";
+
+const PROVES_COMPARED = "It does not say who made the model first. And it proves something to others only if the original, or the record, is older than the suspect: whoever has a key can make an “original” that any model seems to be a copy of.";
 
 const EVIDENCE = "Evidence was read, which says what whoever measured it likes: before you hold it against somebody, measure their model yourself.";
 
@@ -29,6 +33,7 @@ interface Asked {
   keys: Pick<KeySource, "isInForm">;
   expected: string | null;
   ledger: Ledger | null;
+  given: Given | null;
 }
 
 /** What a tracing comes to, in a few words. */
@@ -39,32 +44,48 @@ const TRACED: Record<Tracing["traced"], string> = {
   "cannot-check": "Cannot check",
 };
 
-export class Check extends View<Stage> {
+export class Check extends View<CheckStage> {
   protected override readonly areSuspects = true;
   readonly #expected = find<HTMLInputElement>("#expected");
   readonly #ledgerFile = find<HTMLInputElement>("#ledger");
   #ledger: Ledger | null = null;
   /** Until the last ledger that was chosen is read; whether it could be. */
   #ledgerRead: Promise<boolean> = Promise.resolve(true);
+  readonly #given = new GivenField(() => this.onOther());
   #asked: Asked | undefined;
+  /** Whether the stage shows what was compared. */
+  #isLaid = false;
 
   constructor(root: HTMLElement) {
-    super(root, "Cannot check", Stage);
+    super(root, "Cannot check", CheckStage);
     watchTag(this.#expected);
     this.#expected.addEventListener("input", () => this.onOther());
     this.#ledgerFile.addEventListener("change", () => (this.#ledgerRead = this.#takeLedger()));
     find("#save-evidence").addEventListener("click", () => void this.#saveEvidence());
   }
 
+  /** Takes a record for what the suspect is compared with, and all else for the suspect. */
+  override async takeFiles(files: NamedFile[]): Promise<void> {
+    const are = await Promise.all(files.map(({ file }) => isRecord(file)));
+    const [records, others] = [files.filter((_, i) => are[i]), files.filter((_, i) => !are[i])];
+    if (records.length > 0) {
+      this.#given.take(records);
+    }
+    if (others.length > 0) {
+      await super.takeFiles(others);
+    }
+  }
+
   /** Says whether the answer still is to what the form asks. */
   override onOther(): void {
     if (this.#asked) {
-      const { card, model, keys, expected, ledger } = this.#asked;
+      const { card, model, keys, expected, ledger, given } = this.#asked;
       const now = this.#expected.value || null;
       const others = [
         ...(model === this.model ? [] : [this.model ? `the model ${this.model.name}` : "no model"]),
         ...(keys.isInForm() ? [] : ["another key"]),
         ...(ledger === this.#ledger ? [] : [this.#ledger === null ? "no ledger" : "another ledger"]),
+        ...(given === this.#given.given ? [] : [this.#given.given === null ? "no original" : `${this.#given.given.name} to compare with`]),
         ...(expected === now ? [] : [now === null ? "no tag to look for" : `the tag ${now} to look for`]),
       ];
       flag(card, others, "This answer is to what it said before.");
@@ -78,8 +99,14 @@ export class Check extends View<Stage> {
     const problem = keys.length > 0 && expected !== null ? "With several keys the tag is read, not looked for: leave this empty." : tagProblem(this.#expected.value);
     setProblem(this.#expected, problem);
     const isRead = await this.#ledgerRead;
-    const model = this.ready(keyField ?? (problem ? this.#expected : isRead ? null : this.#ledgerFile));
+    const isGiven = await this.#given.isReady();
+    const model = this.ready(keyField ?? (problem ? this.#expected : isRead ? (isGiven ? null : this.#given.input) : this.#ledgerFile));
     if (!model) {
+      return;
+    }
+    this.#dropLaid();
+    if (this.#given.given) {
+      await this.#compare(model, this.#given.given, expected);
       return;
     }
     if (this.#ledger) {
@@ -93,7 +120,7 @@ export class Check extends View<Stage> {
     const key = keySource();
     const answer = await this.run(`Checking ${model.name}`, async (task) => read(await engine, model, key.make, expected, task));
     if (answer) {
-      this.#show({ card: this.#card(model, key, expected, answer), model, keys: key, expected, ledger: null });
+      this.#show({ card: this.#card(model, key, expected, answer), model, keys: key, expected, ledger: null, given: null });
     }
   }
 
@@ -118,7 +145,7 @@ export class Check extends View<Stage> {
     });
     if (lines) {
       const isInForm = () => (one ? one.isInForm() : severalKeys() === keys);
-      this.#show({ card: this.#linesCard(lines, suspects.length, keys.length, expected), model, keys: { isInForm }, expected, ledger: null });
+      this.#show({ card: this.#linesCard(lines, suspects.length, keys.length, expected), model, keys: { isInForm }, expected, ledger: null, given: null });
     }
   }
 
@@ -135,6 +162,56 @@ export class Check extends View<Stage> {
       this.onOther();
     }
     return true;
+  }
+
+  /** Reads a suspect with its original, or with the record of marking it. */
+  async #compare(model: Model, given: Given, expected: string | null): Promise<void> {
+    const problem = isEvidence(model) || severalKeys().length > 0 || this.several.length > 1 || this.#ledger ? "With an original or a record, one model is checked with one key; no evidence, no ledger, and not several." : null;
+    setProblem(this.#given.input, problem);
+    if (problem) {
+      this.#given.input.focus();
+      return;
+    }
+    const key = keySource();
+    const answer = await this.run(`Comparing ${model.name} with ${given.name}`, (task) => compared(model, given, key, task));
+    if (!answer) {
+      return;
+    }
+    const card = this.#comparisonCard(model, given, key, expected, answer);
+    this.#show({ card, model, keys: key, expected, ledger: null, given });
+    const { overlay } = answer;
+    if (overlay) {
+      this.#isLaid = true;
+      await this.stage.showLaid(overlay, () => this.model === model && this.#isLaid);
+    }
+  }
+
+  /** Shows the suspect alone again. */
+  #dropLaid(): void {
+    if (this.#isLaid) {
+      this.#isLaid = false;
+      this.stage.dropLaid();
+    }
+  }
+
+  #comparisonCard(model: Model, given: Given, key: KeySource, expected: string | null, answer: Compared): HTMLElement {
+    const isOther = expected !== null && answer.verdict === "found" && answer.tag !== expected;
+    const name = answer.tag ?? String(answer.number);
+    const sha256 = this.inspection?.sha256 ?? null;
+    const figures = numbers(comparisonRows(answer));
+    return card(
+      isOther ? "partial" : answer.verdict,
+      isOther ? `Your key’s mark, with ${answer.tag === null ? "number" : "tag"} ${name}, not ${expected}` : headlineOf(answer),
+      [`${model.name}, compared with ${given.kind === "record" ? "the record" : "the original"} ${given.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}.`],
+      answers(answer, given),
+      ...(isMark(answer) ? [h("p", { class: "hint" }, PROVES_COMPARED), details("In numbers", figures)] : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures)]),
+      ...(answer.overlay ? [h("p", { class: "hint" }, "The picture beside this shows the suspect where it lies on the original: move the line between them, see how far they are apart, and which places speak for your mark. That last map follows your key: keep it to yourself.")] : []),
+      actions(
+        button("Save report (HTML)", () => save(renamed(model.name, "report.html"), answer.statement, "text/html")),
+        button("Save report (JSON)", async () => saveJson(renamed(model.name, "report.json"), await comparisonReport(model.name, sha256, given, expected, answer))),
+        button("Dismiss", () => this.#dismiss()),
+      ),
+    );
   }
 
   /** Whose copies a model was made of. */
@@ -161,7 +238,7 @@ export class Check extends View<Stage> {
       return withKey(client, key.make, task, (bytes) => client.trace(model.bytes, bytes, numbers, { files: model.buffers, statement, signal, onProgress }));
     });
     if (tracing) {
-      this.#show({ card: this.#tracingCard(model, ledger, tracing), model, keys: key, expected: this.#expected.value || null, ledger });
+      this.#show({ card: this.#tracingCard(model, ledger, tracing), model, keys: key, expected: this.#expected.value || null, ledger, given: null });
     }
   }
 
@@ -203,6 +280,7 @@ export class Check extends View<Stage> {
   }
 
   #dismiss(): void {
+    this.#dropLaid();
     this.#asked = undefined;
     this.outcome.finish();
     find("button[type=submit]", this.form).focus();

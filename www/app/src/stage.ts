@@ -11,7 +11,7 @@ import { percent, significant } from "./words";
 const SEGMENTS = ["version", "shading", "normals"] as const;
 
 export class Stage extends Showing {
-  #viewer: Viewer | undefined;
+  protected viewer: Viewer | undefined;
   /** Counts the models shown, and the copies: a slow one that has been replaced must not appear. */
   #turn = 0;
   #copyTurn = 0;
@@ -36,7 +36,7 @@ export class Stage extends Showing {
       return;
     }
     this.#isDrawn = this.draw(isWanted, async () => {
-      const { loadScene, viewer } = await this.#loadViewer();
+      const { loadScene, viewer } = await this.loadViewer();
       const scene = await loadScene(model);
       if (isWanted()) {
         viewer.showBefore(scene);
@@ -54,7 +54,7 @@ export class Stage extends Showing {
       return; // without the one there is nothing to compare the other with
     }
     await this.draw(isWanted, async () => {
-      const { loadScene, viewer } = await this.#loadViewer();
+      const { loadScene, viewer } = await this.loadViewer();
       const scene = await loadScene(model);
       if (isWanted()) {
         const max = viewer.showAfter(scene);
@@ -68,21 +68,21 @@ export class Stage extends Showing {
   /** Takes the marked copy away again. */
   dropMarked(): void {
     this.#copyTurn++;
-    this.#viewer?.dropAfter();
-    this.#offer({ marked: false, normals: this.#viewer?.hasNormals ?? false });
+    this.viewer?.dropAfter();
+    this.#offer({ marked: false, normals: this.viewer?.hasNormals ?? false });
     this.#pressAll({ version: "before", shading: "surface" });
   }
 
   protected clear(): void {
     this.#turn++;
-    this.#viewer?.clear();
+    this.viewer?.clear();
   }
 
   /** three.js comes with the first model. */
-  async #loadViewer() {
+  protected async loadViewer() {
     const [{ Viewer }, { loadScene }] = await Promise.all([import("./viewer/viewer"), import("./viewer/load")]);
-    this.#viewer ??= new Viewer(this.canvases()[0]!);
-    return { loadScene, viewer: this.#viewer };
+    this.viewer ??= new Viewer(this.canvases()[0]!);
+    return { loadScene, viewer: this.viewer };
   }
 
   #startTools(): void {
@@ -93,8 +93,8 @@ export class Stage extends Showing {
     }
     const wireframe = this.tool("wireframe");
     wireframe.addEventListener("click", () => this.#pressAll({ wireframe: wireframe.getAttribute("aria-pressed") !== "true" }));
-    this.tool("fit").addEventListener("click", () => this.#viewer?.fit());
-    this.tool("reset").addEventListener("click", () => this.#viewer?.reset());
+    this.tool("fit").addEventListener("click", () => this.viewer?.fit());
+    this.tool("reset").addEventListener("click", () => this.viewer?.reset());
   }
 
   #segments(kind: (typeof SEGMENTS)[number]): HTMLElement[] {
@@ -115,7 +115,7 @@ export class Stage extends Showing {
       find(".legend", this.viewing).hidden = change.shading !== "heat";
       this.tool("normals").dataset["shading"] = change.shading;
     }
-    this.#viewer?.look(change);
+    this.viewer?.look(change);
   }
 
   /** Shows the tools for what there is to see: a marked copy, and normals of the file's own. */

@@ -2,6 +2,7 @@
 import type { Inspection } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
 import { unpacked } from "./archive";
+import { sha256 } from "./digest";
 import { announce, find } from "./dom";
 import { engine } from "./engine";
 import { isEvidence, missingFiles, modelsIn, type Found, type Model, type NamedFile } from "./model";
@@ -231,10 +232,4 @@ export abstract class View<S extends Showing> {
   }
 
   protected abstract submit(): Promise<void>;
-}
-
-/** Of a file that the module has not seen, in hexadecimal. */
-async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
-  const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
-  return Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }

@@ -33,6 +33,7 @@ const ATTACKS: Record<string, AttackWords> = {
   quantize: { name: "rounding to 11 bits", meaning: "Of positions, as when a model is compressed." },
   smooth: { name: "10 light steps of smoothing", meaning: "In Blender: Smooth Vertices, smoothing 0.1, repeat 10." },
   "simplify-30": { name: "removing 30 % of its triangles" },
+  "simplify-50": { name: "removing half of its triangles" },
   "simplify-70": { name: "removing 70 % of its triangles" },
   crop: { name: "cutting 30 % of it away" },
 };
@@ -55,7 +56,7 @@ export function plain(words: string): string {
 }
 
 /** Whether a mark is there beyond chance, with a tag or without. */
-export function isMark({ verdict }: Extraction): boolean {
+export function isMark({ verdict }: Pick<Extraction, "verdict">): boolean {
   return verdict === "found" || verdict === "present";
 }
 

@@ -8,7 +8,19 @@ import { asMeshmarkError, MeshmarkError } from "./error.js";
 import { load, type InitInput, type Loadable } from "./loading.js";
 
 export { MeshmarkError };
-export type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "../wasm-informed/informed.js";
+export type {
+  CompareMeshOptions,
+  CompareOptions,
+  CompareWithRecordOptions,
+  ComparingOptions,
+  Comparison,
+  Marking,
+  Overlay,
+  RecordOptions,
+  Sheet,
+  StatedFile,
+  StatementOptions,
+} from "../wasm-informed/informed.js";
 
 let module: typeof wasm | undefined;
 let starting: Promise<void> | undefined;

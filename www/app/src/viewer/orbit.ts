@@ -10,6 +10,7 @@ import {
   Scene,
   Sphere,
   Spherical,
+  Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
@@ -31,6 +32,14 @@ const FIRST_DIRECTION = new Vector3(0.55, 0.35, 1).normalize();
 const KEY_TURN = Math.PI / 24;
 const KEY_ZOOM = 1.15;
 
+/** A picture of two sides of an upright line: what is drawn on each is chosen just before. */
+export interface Wipe {
+  /** Where the line stands, from the left: 0 to 1. */
+  at: number;
+  left(): void;
+  right(): void;
+}
+
 /** Where the eye is and what it looks at, from the middle of what was framed and in its radii: the same for scenes of any size. */
 interface Pose {
   eye: Vector3;
@@ -48,6 +57,8 @@ export class Orbit {
   #frame = 0;
   #led: Orbit | undefined;
   #isLed = false;
+  #front = FIRST_DIRECTION;
+  #wipe: Wipe | null = null;
 
   /** @throws where the browser has no WebGL 2 */
   constructor(canvas: HTMLCanvasElement) {
@@ -78,8 +89,9 @@ export class Orbit {
     new ResizeObserver(() => this.#resize(canvas.clientWidth, canvas.clientHeight)).observe(canvas);
   }
 
-  /** Looks at what is in a sphere, from the front. */
-  frame(bounds: Sphere): void {
+  /** Looks at what is in a sphere, from the front, wherever that is. */
+  frame(bounds: Sphere, front = FIRST_DIRECTION): void {
+    this.#front = front;
     this.#bounds.copy(bounds);
     this.reset();
   }
@@ -121,7 +133,13 @@ export class Orbit {
 
   /** The whole model in view, from the front. */
   reset(): void {
-    this.#frameFrom(FIRST_DIRECTION);
+    this.#frameFrom(this.#front);
+  }
+
+  /** From now on draws two sides of a line; with `null`, all as it stands in the scene. */
+  wipe(wipe: Wipe | null): void {
+    this.#wipe = wipe;
+    this.draw();
   }
 
   /** Draws at the next frame, once; movement that is still dying down asks for the one after it. */
@@ -130,9 +148,26 @@ export class Orbit {
     this.#frame ||= requestAnimationFrame(() => {
       this.#frame = 0;
       this.#controls.update();
-      this.#renderer.render(this.scene, this.#camera);
+      this.#render();
       this.#canvas.dataset["state"] = this.#frame ? "moving" : "still";
     });
+  }
+
+  #render(): void {
+    if (!this.#wipe) {
+      this.#renderer.render(this.scene, this.#camera);
+      return;
+    }
+    const { at, left, right } = this.#wipe;
+    const { x: width, y: height } = this.#renderer.getSize(new Vector2());
+    const line = Math.round(at * width);
+    this.#renderer.setScissorTest(true);
+    for (const [choose, from, to] of [[left, 0, line], [right, line, width]] as const) {
+      choose();
+      this.#renderer.setScissor(from, 0, to - from, height);
+      this.#renderer.render(this.scene, this.#camera);
+    }
+    this.#renderer.setScissorTest(false);
   }
 
   #frameFrom(direction: Vector3): void {

@@ -1,6 +1,7 @@
-/** A model on a canvas: before and after, edges, raking light, heat map. */
+/** A model on a canvas: before and after, edges, raking light, heat map; or a suspect that lies on its original. */
 import type { Object3D, Sphere } from "three";
 import { heatOf } from "./heat";
+import type { Laid, LaidLook } from "./laid";
 import { Layer, type Normals, type Shading } from "./layer";
 import { Orbit, RAKING, SOFT } from "./orbit";
 
@@ -23,6 +24,9 @@ export class Viewer {
   readonly #layers: Partial<Record<Version, Layer>> = {};
   #look = FIRST_LOOK;
   #bounds: Sphere | undefined;
+  /** What lies on an original, and how that is looked at: not at all where the model is. */
+  #laid: Laid | undefined;
+  #laidLook: LaidLook | undefined;
 
   /** @throws where the browser has no WebGL 2 */
   constructor(canvas: HTMLCanvasElement) {
@@ -66,6 +70,36 @@ export class Viewer {
     return heat.max;
   }
 
+  /** Adds a suspect that lies on its original; `lookAtLaid` shows it. */
+  lay(laid: Laid): void {
+    this.#laid?.dispose();
+    this.#laid = laid;
+    laid.root.visible = false;
+    this.#orbit.scene.add(laid.root);
+  }
+
+  /**
+   * Looks at the suspect on its original; `undefined`: at the model again.
+   *
+   * @param at where the line of a wipe stands, from the left: 0 to 1
+   */
+  lookAtLaid(look: LaidLook | undefined, at = 0.5): void {
+    const laid = this.#laid;
+    if (!laid) {
+      return;
+    }
+    if ((look === undefined) !== (this.#laidLook === undefined)) {
+      if (look) {
+        this.#orbit.frame(laid.bounds(), laid.from);
+      } else {
+        this.#orbit.frame(this.#bounds!);
+      }
+    }
+    this.#laidLook = look;
+    this.#orbit.wipe(look === "wipe" ? { at, ...laid.wipe } : null);
+    this.look({});
+  }
+
   /** Takes the marked version away again. */
   dropAfter(): void {
     this.#layers.after?.dispose();
@@ -80,9 +114,13 @@ export class Viewer {
 
   look(change: Partial<Look>): void {
     this.#look = { ...this.#look, ...change };
-    this.#orbit.light(this.#look.shading === "raking" ? RAKING : SOFT);
+    this.#orbit.light(this.#look.shading === "raking" && !this.#laidLook ? RAKING : SOFT);
     for (const version of ["before", "after"] as const) {
-      this.#layers[version]?.show({ ...this.#look, visible: version === this.#look.version });
+      this.#layers[version]?.show({ ...this.#look, visible: version === this.#look.version && !this.#laidLook });
+    }
+    if (this.#laid) {
+      this.#laid.root.visible = this.#laidLook !== undefined;
+      this.#laid.show(this.#laidLook ?? "difference", this.#look.wireframe);
     }
     this.#orbit.draw();
   }
@@ -102,6 +140,9 @@ export class Viewer {
     this.#layers.after?.dispose();
     delete this.#layers.before;
     delete this.#layers.after;
+    this.#laid?.dispose();
+    this.#laid = this.#laidLook = undefined;
+    this.#orbit.wipe(null);
     this.look(FIRST_LOOK);
   }
 

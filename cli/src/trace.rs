@@ -55,7 +55,7 @@ impl Trace {
         );
         self.statement.write(
             Finding::Tracing(&tracing, &named),
-            &[("Suspect", self.suspect.path())],
+            &[("Suspect", self.suspect.path()), ("Ledger", &self.ledger)],
             &key,
             &self.owner,
             &repeated,

@@ -910,6 +910,10 @@ fn a_copy_for_each_buyer_is_traced_and_stated() {
         assert!(buyers[0]["lnP"].as_f64().unwrap() < -20.8);
     }
     let report = fs::read_to_string(folder.path("report.html")).unwrap();
+    assert!(
+        report.contains("<bdi>Ledger</bdi>"),
+        "the ledger's digest is a fact too"
+    );
     assert!(report.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
     assert!(report.contains("What this does not prove"));
     assert!(report.contains("--ledger sold/ledger.json --owner &quot;Ada&quot;"));

@@ -12,7 +12,7 @@ use meshmark::internals::carrier::{Measurement, ring, solid};
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::shapes;
 use meshmark::internals::scene::{Scene, to_glb};
-use meshmark::{EmbedOptions, Evidence, Files, Key, prepare};
+use meshmark::{EmbedOptions, Evidence, Files, Key, RecordOptions, prepare, record};
 use std::fs;
 use std::path::Path;
 use support::fixtures::{gallery, marked};
@@ -46,8 +46,12 @@ fn main() -> std::io::Result<()> {
         &Evidence::from_iter([surface]).to_bytes(),
     )?;
     let plain = EmbedOptions::default();
-    let plan = prepare(&*to_glb(&shapes::asteroid(16, 24)), &key, &plain).expect("a model for copies");
+    let plan =
+        prepare(&*to_glb(&shapes::asteroid(16, 24)), &key, &plain).expect("a model for copies");
     write("plan", "asteroid.mmpl", &plan.0.to_bytes())?;
+    let kept = record(&*to_glb(&host), &plan.1, &key, &RecordOptions::default());
+    let kept = kept.expect("a model of ours");
+    write("record", "asteroid.json", kept.as_bytes())?;
     write("round_trip", "large", &[29, 39])?;
     write(
         "round_trip",

@@ -579,7 +579,7 @@ fn cli_reads_with_the_original_and_with_the_record() {
         ("--original model.glb", "Original"),
         ("--record marked.meshmark.json", "Record"),
     ] {
-        let stated = format!("extract marked.glb {with} --report report.html {ADA}");
+        let stated = format!("extract copy.glb {with} --report report.html {ADA}");
         assert_eq!(folder.run(&stated).0, 0, "{with}");
         let report = fs::read_to_string(folder.path("report.html")).unwrap();
         for words in [
@@ -587,11 +587,14 @@ fn cli_reads_with_the_original_and_with_the_record() {
             "The shape is the original",
             "data:image/png;base64,",
             "whoever holds the key can make an",
+            "cut: ",
             role,
             with,
         ] {
             assert!(report.contains(words), "{with}: {words}");
         }
+        // A record has few triangles: of the copy's own it says nothing.
+        assert_eq!(report.contains("other triangles: "), role == "Original");
         let is_recorded = report.contains("what the record keeps of it");
         assert_eq!(is_recorded, role == "Record");
     }

@@ -27,6 +27,9 @@ pub(super) const STYLE: &str = "figure{margin:1.2rem 0}img{width:100%;display:bl
 #[derive(Clone, Debug, PartialEq)]
 pub struct Illustration {
     pub(super) html: String,
+    /// How many triangles the suspect has where the two are near each other, as a share of the original's there; `None` where the original is a record's, which
+    /// has few.
+    pub(super) triangles: Option<f64>,
 }
 
 impl Illustration {
@@ -34,8 +37,15 @@ impl Illustration {
     pub fn of(overlay: &Overlay) -> Illustration {
         Illustration {
             html: figure(overlay),
+            triangles: (!overlay.is_recorded).then(|| share_of_triangles(overlay)),
         }
     }
+}
+
+fn share_of_triangles(overlay: &Overlay) -> f64 {
+    let num_near = |sheet, values| parted(sheet, values).0.len() as f64;
+    num_near(&overlay.suspect, &overlay.additions)
+        / num_near(&overlay.original, &overlay.differences).max(1.0)
 }
 
 fn figure(overlay: &Overlay) -> String {

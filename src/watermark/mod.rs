@@ -1,6 +1,7 @@
 //! The pipelines: bytes in, bytes and a report out. Nothing here computes; every step is a call to another room.
 
 mod capacity;
+mod changes;
 mod compare;
 mod copies;
 mod displace;

@@ -1,5 +1,6 @@
 //! A statement: what was found in a suspect, as one HTML file that a person prints or sends. No script, nothing from the network.
 
+use super::changes::changes;
 use super::illustration::{self, Illustration};
 use super::report::{Comparison, Extraction, Input, Shape, Verdict};
 use super::trace::{Traced, Tracing};
@@ -221,12 +222,16 @@ impl Statement<'_> {
                 fact("Ways of reading tested", &tracing.num_ways.to_string());
                 tracing.reading.input
             }
-            Finding::Comparison(comparison, _) => {
+            Finding::Comparison(comparison, picture) => {
                 if let Some(tag) = &comparison.tag {
                     fact("Tag that was read", tag);
                 }
                 if let Some(number) = comparison.number {
                     fact("Number that was read", &number.to_string());
+                }
+                let changes = changes(comparison, picture.and_then(|picture| picture.triangles));
+                if !changes.is_empty() {
+                    fact("What was done to the copy", &changes.join("; "));
                 }
                 Input::Model
             }

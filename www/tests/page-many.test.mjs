@@ -35,7 +35,7 @@ unseen("several models are marked in one go, and are had in one archive with the
   assert.equal(meshmark.detect(archive["c.marked.vrm"], key).tag, "LOT-1");
   const { owner, asked, hostBytes, forecastSeed, report } = JSON.parse(Buffer.from(archive["a.marked.report.json"]).toString());
   assert.deepEqual([owner, asked, hostBytes, forecastSeed], [OWNER, { tag: "LOT-1", strength: "balanced", carriers: ["solid", "ring"] }, small.length, 1]);
-  assert.equal(report.forecast.length, 8);
+  assert.equal(report.forecast.length, 9);
   await page.reload(); // nothing is left, so nothing is asked
 
   await dropped(onDisk("a.glb", small));

@@ -5,7 +5,7 @@ import { basename, join } from "node:path";
 import { before } from "node:test";
 import { NodeIO } from "@gltf-transform/core";
 import * as meshmark from "meshmark";
-import { button, check, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, result, saved, savedReport, submitted, unseen, view } from "./page.mjs";
+import { button, check, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, RARELY, result, saved, savedReport, submitted, unseen, view } from "./page.mjs";
 import { assertNoNewErrors, CUBE, glbFromObj, OWNER, PASSPHRASE, sharedModel, smallModel, TAG } from "./support.mjs";
 
 /** The cube as a thin rod: neither its shape nor its connectivity can hold a mark. */
@@ -23,9 +23,9 @@ const preview = () => page.locator("#preview");
 /** The preview's RMS displacement, in percent of the diagonal. */
 const previewRms = async () => parseFloat(await preview().locator("dd").first().textContent());
 
-for (const [name, source] of [
+for (const [name, source, skip] of [
   ["demo.glb", () => meshmark.demoModel()],
-  ["chr_knight.glb", (t) => sharedModel("gltf/chr_knight.glb", t)],
+  ["chr_knight.glb", (t) => sharedModel("gltf/chr_knight.glb", t), RARELY],
 ]) {
   onPage(`${name} is dropped, marked, downloaded, and its mark found with this key alone`, async (t) => {
     const host = source(t);
@@ -74,7 +74,7 @@ for (const [name, source] of [
     await page.getByLabel(/Tag to look for/).fill(TAG);
     await check();
     assert.equal(await headline(), "Your mark was found");
-  });
+  }, { skip });
 }
 
 unseen("a work has a key of its own, and is found with its title alone", async () => {
@@ -173,7 +173,7 @@ onPage("a strength is tried on the model before it is chosen, the last one wins,
   for (const row of await preview().locator("li").allTextContents()) {
     assert.match(row, /\w.*(Survives|Barely|Lost)$/);
   }
-  assert.equal(await preview().locator("li").count(), 8);
+  assert.equal(await preview().locator("li").count(), 9);
   await button("Marked").waitFor();
   await picture("preview");
 

@@ -28,19 +28,22 @@ pub fn test(all: bool) -> Result<()> {
     add(&mut steps, "format", &[], format, "run `cargo fmt --all`");
     let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
     add(&mut steps, "native lint", &["format"], lint, LINT);
-    // The page's tests wait for the modules, which are compiled on one core each: the other tests give way to them.
-    let native = format!("nice {NATIVE}");
-    add(&mut steps, "native tests", &["native lint"], &native, TESTS);
+    // The longest way: all else gives way to it where there are too few cores.
+    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
     steps.add("Chromium", &["format"], browser::set_up);
-    steps.add("package and page tests", &["page", "Chromium"], move |log| {
-        let mut test = npm_test("test");
-        if all {
-            test.env("MESHMARK_ALL", "1");
-        }
-        log.run(&mut test, TESTS)
-    });
+    steps.add(
+        "package and page tests",
+        &["page", "Chromium"],
+        move |log| {
+            let mut test = npm_test("test");
+            if all {
+                test.env("MESHMARK_ALL", "1");
+            }
+            log.run(&mut test, TESTS)
+        },
+    );
     steps.add("documentation", &["native tests"], |log| {
         let mut doc = command("cargo doc --no-deps --package meshmark");
         doc.env("RUSTDOCFLAGS", "-Dwarnings");
@@ -61,7 +64,10 @@ pub fn test(all: bool) -> Result<()> {
     // long: their numbers are those of the native tests, as the golden marks show. Node has all of them, with `--all`.
     let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
     steps.add("wasm tests in Chromium", &after, |log| {
-        let mut suite = wasm::command(&manifest, &format!("nice cargo test --test suite -- {IN_NODE_ALONE}"))?;
+        let mut suite = wasm::command(
+            &manifest,
+            &format!("nice cargo test --test suite -- {IN_NODE_ALONE}"),
+        )?;
         suite
             .env("WASM_BINDGEN_USE_DEDICATED_WORKER", "1")
             // In seconds. The runner's own limits, 20 and 5, are for small suites on idle machines.
@@ -78,7 +84,7 @@ pub fn test(all: bool) -> Result<()> {
 /// Adds what is left out of a commit's checks.
 fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     let native = ["native tests"];
-    let rest = format!("{NATIVE} --test suite -- --ignored --skip models::");
+    let rest = format!("{NATIVE} --tests -- --ignored --skip models::");
     add(steps, "all floors and keys", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =

@@ -28,7 +28,6 @@ pub fn test(all: bool) -> Result<()> {
     add(&mut steps, "format", &[], format, "run `cargo fmt --all`");
     let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
     add(&mut steps, "native lint", &["format"], lint, LINT);
-    // The longest way: all else gives way to it where there are too few cores.
     add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
@@ -66,7 +65,7 @@ pub fn test(all: bool) -> Result<()> {
     steps.add("wasm tests in Chromium", &after, |log| {
         let mut suite = wasm::command(
             &manifest,
-            &format!("nice cargo test --test suite -- {IN_NODE_ALONE}"),
+            &format!("cargo test --test suite -- {IN_NODE_ALONE}"),
         )?;
         suite
             .env("WASM_BINDGEN_USE_DEDICATED_WORKER", "1")

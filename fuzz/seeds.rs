@@ -55,6 +55,11 @@ fn main() -> std::io::Result<()> {
     write("round_trip", "large", &[29, 39])?;
     write(
         "round_trip",
+        "small",
+        &[33, 255, 255, 255, 255, 255, 255, 255, 39, 29, 39],
+    )?;
+    write(
+        "round_trip",
         "holed",
         &[20, 25, 0, 9, 7, 0, 0, 30, 7, 0, 1, 2, 0, 160],
     )?;

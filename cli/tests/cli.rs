@@ -149,7 +149,6 @@ fn cli_embeds_and_extracts() {
 
 /// A piece that was cut out and simplified is found by LOCAL, where it is looked for.
 #[test]
-#[ignore = "takes a minute, and the suite has the same of the library: cargo xtask test --all"]
 fn cli_finds_a_piece_by_local() {
     let here = Folder::new("local");
     let part = meshmark::internals::mesh::shapes::cad_part();

@@ -386,7 +386,7 @@ fn charges_are_those_that_are_declared() {
         .map(of_kind)
         .collect();
     let mut num_split = 0;
-    for number in 0..16 {
+    for number in 0..60 {
         let key = random_key(number);
         let own = rings.read(&key);
         assert_eq!(own.hypotheses.len(), 10);

@@ -16,10 +16,6 @@ const TESTS: &str = "see the failed tests above";
 /// What every native test step compiles alike, so that it is compiled once: tests, examples and what documentation shows.
 const NATIVE: &str = "cargo test --workspace";
 
-/// What is not tried in Chromium.
-const IN_NODE_ALONE: &str =
-    "--skip places:: --skip layers:: --skip robustness:: --skip informed::informed_tells";
-
 /// Runs the checks of a commit, or `all`. What is long stands before what is short, for it decides when the whole ends.
 pub fn test(all: bool) -> Result<()> {
     let manifest = Manifest::read()?;
@@ -59,14 +55,10 @@ pub fn test(all: bool) -> Result<()> {
         let name = "tests with research models";
         add(&mut steps, name, &["native tests"], &models, TESTS);
     }
-    // In a worker, as the package runs; there Chromium's engine is Node's. What is skipped are laws of geometry and of readings that take
-    // long: their numbers are those of the native tests, as the golden marks show. Node has all of them, with `--all`.
+    // In a worker, as the package runs; there Chromium's engine is Node's.
     let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
     steps.add("wasm tests in Chromium", &after, |log| {
-        let mut suite = wasm::command(
-            &manifest,
-            &format!("cargo test --test suite -- {IN_NODE_ALONE}"),
-        )?;
+        let mut suite = wasm::command(&manifest, "cargo test --test suite")?;
         suite
             .env("WASM_BINDGEN_USE_DEDICATED_WORKER", "1")
             // In seconds. The runner's own limits, 20 and 5, are for small suites on idle machines.
@@ -83,7 +75,7 @@ pub fn test(all: bool) -> Result<()> {
 /// Adds what is left out of a commit's checks.
 fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     let native = ["native tests"];
-    let rest = format!("{NATIVE} --tests -- --ignored --skip models::");
+    let rest = format!("{NATIVE} --test suite -- --ignored --skip models::");
     add(steps, "all floors and keys", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =

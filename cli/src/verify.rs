@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::informed::Informed;
+use crate::informed::InformedArguments;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
@@ -15,7 +15,7 @@ pub struct Verify {
     #[command(flatten)]
     suspect: Suspect,
     #[command(flatten)]
-    informed: Informed,
+    informed: InformedArguments,
     #[command(flatten)]
     local: LocalArgument,
     #[command(flatten)]
@@ -34,7 +34,7 @@ impl Verify {
         if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
             return self
                 .telling
-                .of_comparison(compared.comparison, Some(payload), clock);
+                .of_comparison(compared.answer, Some(payload), clock);
         }
         let extraction = self
             .suspect

@@ -2,14 +2,14 @@
 //!
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
-use super::compare::{Compared, Heard, Lay, conclude, options_of_original, read_blind, with_host};
+use super::compare::{Compared, Heard, Informed, Lay, options_of_original, with_host};
+use super::loudest::Loudest;
 use super::overlay::Overlay;
 use super::report::{Comparison, EmbedReport, Witness};
 use super::weigh::Scales;
 use super::{Error, Model, RecordError, Suspect};
 use crate::attack::simplify_to;
 use crate::carrier::{Frames, Recorded, StoredError, take};
-use crate::detection::LN_P_FOUND;
 use crate::document::Document;
 use crate::geometry::{Motion, Original, Search};
 use crate::key::Key;
@@ -179,31 +179,29 @@ pub fn compare_overlaid_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    let (comparison, overlay) = compare_in(suspect.into(), record, key)?.overlaid();
-    let recorded = overlay.map(|overlay| Overlay {
-        is_recorded: true,
-        ..overlay
-    });
-    Ok((comparison, recorded))
+    Ok(compare_in(suspect.into(), record, key)?.overlaid_on_record())
 }
 
 fn compare_in(mut suspect: Suspect, record: &str, key: &Key) -> Result<Compared, Error> {
+    hear_with_record(&mut suspect, record, key, None)?.compared(suspect, key)
+}
+
+/// Reads a suspect with a record. `loudest` hears all that is read, where it is asked whose copies the suspect was made of.
+pub(super) fn hear_with_record(
+    suspect: &mut Suspect,
+    record: &str,
+    key: &Key,
+    loudest: Option<&mut Loudest>,
+) -> Result<Informed, Error> {
     let (shape, recorded) = opened(record, key)?;
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
     let original = shape.mesh();
-    let heard = hear(&original, &recorded, &mesh, key, &mut suspect)?;
-    let blind = match heard.ln_p_payload <= LN_P_FOUND {
-        true => None,
-        false => Some(read_blind(&mesh, key, &mut suspect)?),
-    };
-    suspect.step(Stage::Test, 1.0)?;
-    Ok(Compared {
-        comparison: conclude(&heard, blind),
+    Ok(Informed {
+        heard: hear(&original, &recorded, &mesh, key, loudest, suspect)?,
         original,
         suspect: mesh,
-        spoken: heard.spoken,
     })
 }
 
@@ -212,6 +210,7 @@ fn hear(
     recorded: &Recorded,
     suspect: &Mesh,
     key: &Key,
+    mut loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(shape);
@@ -233,9 +232,14 @@ fn hear(
         recorded.read(suspect, &motions, key, &mut |mut way| {
             way.list = 2 * (known + way.list);
             way.ln_num_tests += ln_num_searches;
-            is_settled = scales.hear(&way);
+            let is_enough = scales.hear(&way);
+            match &mut loudest {
+                Some(loudest) => loudest.hear(way),
+                None => is_settled = is_enough,
+            }
             is_settled
         });
+        is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
         if is_settled {
             break;
         }

@@ -182,7 +182,7 @@ function asset(name) {
   if (own.includes(name)) {
     return fileURLToPath(new URL(`public/${name}`, import.meta.url));
   }
-  const [, path] = /^meshmark\/((?:dist|wasm|wasm-codecs|wasm-copies)\/\w+\.(?:js|wasm))$/.exec(name) ?? [];
+  const [, path] = /^meshmark\/((?:dist|wasm|wasm-full)\/\w+\.(?:js|wasm))$/.exec(name) ?? [];
   return path && fileURLToPath(new URL(`../${path}`, import.meta.resolve("meshmark")));
 }
 

@@ -2,7 +2,7 @@
 import { parentPort } from "node:worker_threads";
 import * as meshmark from "meshmark";
 
-await meshmark.initCopies();
+await meshmark.initFull();
 
 parentPort.on("message", ({ id, name, args }) => {
   try {

@@ -124,7 +124,7 @@ pub enum DocumentError {
     },
     /// Compressed geometry.
     #[error(
-        "the model's geometry is compressed ({name}), and what reads it is not loaded: in JavaScript call initCodecs() first; or \
+        "the model's geometry is compressed ({name}), and what reads it is not loaded: in JavaScript call initFull() first; or \
          decompress it, for example with `gltf-transform copy in.glb out.glb`"
     )]
     CompressionUnsupported {

@@ -1,4 +1,4 @@
-//! Copies for buyers, and tracing: what a page loads when somebody sells.
+//! Copies for buyers, and tracing: for who sells.
 
 use super::marks::{embed_options_from, evidence_from, key_from, model_to, surface_from};
 use super::options::Options;
@@ -9,9 +9,6 @@ use crate::{Extraction, Finding, Key, Model, Payload, Plan, Surface, Tracing};
 use js_sys::{Object, Reflect, Uint8Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
-
-#[wasm_bindgen(typescript_custom_section)]
-const TYPES: &str = include_str!("copies.d.ts");
 
 thread_local! {
     /// The plan that was stamped last: to look at its host again takes longer than a stamp.

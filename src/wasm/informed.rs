@@ -1,5 +1,6 @@
-//! Reading with the original at hand: a module of its own, which is loaded when it is asked for.
+//! Reading with the original or with a record.
 
+use super::marks::{key_from, surface_from};
 use super::options::Options;
 use super::statement::stated;
 use super::{argument, encoded, files_from, set, thrown};
@@ -7,9 +8,6 @@ use crate::watermark::{self, Comparison, Error, Illustration, Overlay, RecordOpt
 use crate::{Finding, Key, Model, Surface};
 use js_sys::{Float32Array, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
-
-#[wasm_bindgen(typescript_custom_section)]
-const TYPES: &str = include_str!("informed.d.ts");
 
 /// Reads a suspect with the original.
 #[wasm_bindgen(skip_typescript)]
@@ -62,12 +60,7 @@ pub fn compare_mesh(
     let (key, asked) = (key_from(key)?, Asked::of(&options)?);
     let mut listener = options.listener()?;
     let of_original = files_from(&options.get("originalFiles"))?;
-    let (positions, []) = positions.as_chunks() else {
-        return Err(argument("positions have three numbers each"));
-    };
-    let (triangles, []) = triangles.as_chunks() else {
-        return Err(argument("triangles have three numbers each"));
-    };
+    let (positions, triangles) = surface_from(positions, triangles)?;
     let suspect = Surface::new(positions, triangles).with_progress(&mut listener);
     let original = Model::new(original).with_files(&of_original);
     told(
@@ -114,10 +107,6 @@ pub fn record(
         .with_date(text("date"));
     let model = Model::new(original).with_files(&files);
     watermark::record_of(&model, &marking, &key_from(key)?, &named).map_err(thrown)
-}
-
-fn key_from(bytes: &[u8]) -> Result<Key, JsValue> {
-    Key::from_bytes(bytes).map_err(Error::from).map_err(thrown)
 }
 
 /// What is wanted beside the comparison.

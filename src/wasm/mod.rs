@@ -1,27 +1,23 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
-//! There are five modules, each with a feature and a contract of its own, so that a page that only marks and checks loads nothing
-//! else: `marks.rs` with `types.d.ts`, `informed.rs` with `informed.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. A fifth has all of
-//! `marks.rs` and what sellers need beside, `copies.rs` with `copies.d.ts`. The package's
+//! There are four modules, each with a feature and a contract of its own, so that a page that only marks and checks loads nothing
+//! else: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The fourth has all of `marks.rs`,
+//! and beside it `informed.rs` and `copies.rs`, with `full.d.ts`. The package's
 //! tests hold the contracts to what is exported. What a call cannot do without are its arguments; all else is in one object, its
 //! last. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
 #[cfg(feature = "wasm-attacks")]
 mod attacks;
-#[cfg(feature = "wasm-copies")]
+#[cfg(feature = "wasm-full")]
 mod copies;
-#[cfg(feature = "wasm-informed")]
+#[cfg(feature = "wasm-full")]
 mod informed;
-#[cfg(any(
-    feature = "wasm-marks",
-    feature = "wasm-study",
-    feature = "wasm-informed"
-))]
+#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 mod listener;
 #[cfg(feature = "wasm-marks")]
 mod marks;
 mod options;
-#[cfg(any(feature = "wasm-copies", feature = "wasm-informed"))]
+#[cfg(feature = "wasm-full")]
 mod statement;
 #[cfg(feature = "wasm-study")]
 mod study;
@@ -31,6 +27,11 @@ use crate::watermark::Error;
 use js_sys::{Array, Object, Uint8Array};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
+
+/// Of the module with everything: what `informed.rs` and `copies.rs` export.
+#[cfg(feature = "wasm-full")]
+#[wasm_bindgen(typescript_custom_section)]
+const FULL_TYPES: &str = include_str!("full.d.ts");
 
 /// A panic stops the module, and the package can say no more than `internal`: the console says what happened and where, so that
 /// it can be reported.
@@ -61,11 +62,7 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     Ok(named)
 }
 
-#[cfg(any(
-    feature = "wasm-marks",
-    feature = "wasm-study",
-    feature = "wasm-informed"
-))]
+#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
     js_sys::Reflect::set(object, &name.into(), value).map(drop)
 }

@@ -46,7 +46,7 @@ pub use note::{
 };
 pub use options::{EmbedOptions, Strength};
 pub use overlay::{Overlay, Sheet};
-#[cfg(all(target_arch = "wasm32", feature = "wasm-informed"))]
+#[cfg(all(target_arch = "wasm32", feature = "wasm-full"))]
 pub(crate) use record::record_of;
 pub use record::{RecordOptions, compare_overlaid_with_record, compare_with_record, record};
 pub use report::{

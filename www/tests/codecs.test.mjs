@@ -5,7 +5,7 @@ import { Logger, NodeIO, Verbosity } from "@gltf-transform/core";
 import { ALL_EXTENSIONS } from "@gltf-transform/extensions";
 import { draco, meshopt } from "@gltf-transform/functions";
 import draco3d from "draco3dgltf";
-import { decompress, deriveKey, detect, embed, init, initCodecs, inspect } from "meshmark";
+import { decompress, deriveKey, detect, embed, init, initFull, inspect } from "meshmark";
 import { MeshoptDecoder, MeshoptEncoder } from "meshoptimizer";
 import { assertNoNewErrors, OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 
@@ -44,14 +44,14 @@ async function contentOf(model) {
 
 test("without the codecs a compressed model is refused, with what helps", async () => {
   const model = await compressed(variants["Draco, 14 bits"]);
-  assert.throws(() => inspect(model), { code: "document.compression-unsupported", message: /initCodecs/ });
+  assert.throws(() => inspect(model), { code: "document.compression-unsupported", message: /initFull/ });
   assert.deepEqual(decompress(host).model, host);
-  await initCodecs();
+  await initFull();
 });
 
 for (const [name, transforms] of Object.entries(variants)) {
   test(`${name}: decoded as others decode it, marked, and found`, async (t) => {
-    await initCodecs();
+    await initFull();
     const model = await compressed(transforms);
     const plain = decompress(model);
     assert.deepEqual(plain.files, {});

@@ -1,13 +1,13 @@
-// src/wasm/types.d.ts is written by hand; these tests hold it to the module, in both directions.
+// src/wasm/types.d.ts and full.d.ts are written by hand; these tests hold them to the modules, in both directions.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import * as facade from "meshmark";
 import * as glue from "../meshmark/wasm/meshmark.js";
 import { readContract } from "./shape.mjs";
-import { caught, contractFile, copiesFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { caught, contractFile, fullContractFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
 
 const contract = readContract(contractFile);
-const copies = readContract(copiesFile);
+const full = readContract(fullContractFile);
 
 before(() => facade.init());
 
@@ -23,7 +23,7 @@ test("each function takes the declared number of arguments", () => {
 });
 
 test("the package exports the same functions, init and its error", () => {
-  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), ...copies.functions.keys(), "init", "initCodecs", "initCopies", "MeshmarkError"].sort());
+  assert.deepEqual(Object.keys(facade).sort(), [...contract.functions.keys(), ...full.functions.keys(), "init", "initFull", "MeshmarkError"].sort());
 });
 
 test("real results have exactly the declared shapes", () => {
@@ -50,14 +50,17 @@ test("real results have exactly the declared shapes", () => {
   assert.equal(typeof facade.version(), "string");
 });
 
-test("copies and tracings have the declared shapes, and their calls the declared arguments and options", async () => {
-  await facade.initCopies();
-  const glue = await import("../meshmark/wasm-copies/copies.js");
+test("the full module exports what the first one does and what its own contract declares", async () => {
+  const glue = await import("../meshmark/wasm-full/full.js");
   const exported = Object.keys(glue).filter((name) => !LOADING.includes(name));
-  assert.deepEqual(exported.sort(), [...contract.functions.keys(), ...copies.functions.keys()].sort());
-  for (const [name, parameters] of copies.functions) {
+  assert.deepEqual(exported.sort(), [...contract.functions.keys(), ...full.functions.keys()].sort());
+  for (const [name, parameters] of full.functions) {
     assert.equal(glue[name].length, parameters, name);
   }
+});
+
+test("copies and tracings have the declared shapes, and their calls the declared options", async () => {
+  await facade.initFull();
   const [model, key] = [facade.demoModel(), new Uint8Array(32).fill(1)];
   const prepared = facade.prepare(model, key);
   assert.deepEqual(contract.differences("Prepared", prepared), []);

@@ -12,7 +12,7 @@ let browser;
 before(async () => {
   await meshmark.init();
   assert.throws(() => meshmark.prepare(meshmark.demoModel(), KEY), { code: "init.missing" });
-  await meshmark.initCopies();
+  await meshmark.initFull();
   server = await serve(packageFolder, { configFile: false, appType: "mpa", build: { outDir: "." } });
   browser = await launch();
 });
@@ -87,6 +87,6 @@ test("the client makes copies with several workers, in their order", { timeout: 
   assert.equal(before, false, "the module comes when it is asked for");
   assert.deepEqual(numbers, [[5, [5]], [3, [3]], [4, [4]]]);
   assert.equal(end, 1);
-  assert.ok(fetched.some((path) => path.endsWith("copies_bg.wasm")));
+  assert.ok(fetched.some((path) => path.endsWith("full_bg.wasm")));
   await page.close();
 });

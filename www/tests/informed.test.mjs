@@ -1,14 +1,11 @@
-// Reading with the original and with the record: the module is what its contract says, and finds what it should.
+// Reading with the original and with the record: it finds what it should, and gives what the contract declares.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
-import { fileURLToPath } from "node:url";
 import * as meshmark from "meshmark";
-import * as informed from "meshmark/informed";
-import * as glue from "../meshmark/wasm-informed/informed.js";
 import { readContract } from "./shape.mjs";
+import { contractFile } from "./support.mjs";
 
-const LOADING = ["default", "initSync", "start"];
-const contract = readContract(fileURLToPath(new URL("../../src/wasm/informed.d.ts", import.meta.url)));
+const contract = readContract(contractFile);
 const key = new Uint8Array(32).fill(5);
 let original;
 let embedding;
@@ -19,38 +16,29 @@ before(async () => {
   embedding = meshmark.embed(original, "TEST-42", key);
 });
 
-test("before it is loaded, a call says so", () => {
-  assert.throws(() => informed.compare(original, original, key), { code: "init.missing" });
-});
-
-test("the module exports exactly the functions that the contract declares", async () => {
-  await informed.init();
-  const exported = Object.keys(glue).filter((name) => !LOADING.includes(name));
-  assert.deepEqual(exported.sort(), [...contract.functions.keys()].sort());
-  for (const [name, parameters] of contract.functions) {
-    assert.equal(glue[name].length, parameters, name);
-  }
-  assert.deepEqual(Object.keys(informed).sort(), [...contract.functions.keys(), "init", "MeshmarkError"].sort());
+test("before the full module is loaded, a call says so", async () => {
+  assert.throws(() => meshmark.compare(original, original, key), { code: "init.missing" });
+  await meshmark.initFull();
 });
 
 test("a marked copy is found with the original and with the record, and results have the declared shapes", () => {
   const heard = [];
-  const comparison = informed.compare(embedding.model, original, key, { onProgress: (...report) => heard.push(report) });
+  const comparison = meshmark.compare(embedding.model, original, key, { onProgress: (...report) => heard.push(report) });
   assert.deepEqual(contract.differences("Comparison", comparison), []);
   assert.deepEqual([comparison.verdict, comparison.shape, comparison.tag], ["found", "same", "TEST-42"]);
   assert.ok(heard.length > 0 && heard.every(([stage]) => contract.differences("Stage", stage).length === 0));
-  const record = informed.record(original, embedding.report, key, { owner: "Ada", date: "2026-11-29" });
+  const record = meshmark.record(original, embedding.report, key, { owner: "Ada", date: "2026-11-29" });
   assert.equal(JSON.parse(record).owner, "Ada");
-  const again = informed.compareWithRecord(embedding.model, record, key);
+  const again = meshmark.compareWithRecord(embedding.model, record, key);
   assert.deepEqual(contract.differences("Comparison", again), []);
   assert.deepEqual([again.verdict, again.tag], ["found", "TEST-42"]);
-  assert.throws(() => informed.compareWithRecord(embedding.model, record, new Uint8Array(32).fill(6)), { code: "record.other-key" });
-  assert.throws(() => informed.compareWithRecord(embedding.model, "{}", key), { code: "record.not-a-record" });
+  assert.throws(() => meshmark.compareWithRecord(embedding.model, record, new Uint8Array(32).fill(6)), { code: "record.other-key" });
+  assert.throws(() => meshmark.compareWithRecord(embedding.model, "{}", key), { code: "record.not-a-record" });
 });
 
 test("what is seen of a comparison, and its statement, come where they are asked for", () => {
   const statement = { owner: "Ada", date: "today", files: [{ role: "Suspect", name: "<b>.glb", bytes: 1, sha256: "00" }], commands: ["meshmark extract it"] };
-  const comparison = informed.compare(embedding.model, original, key, { overlay: true, statement });
+  const comparison = meshmark.compare(embedding.model, original, key, { overlay: true, statement });
   assert.deepEqual(contract.differences("Comparison", comparison), []);
   const { overlay } = comparison;
   const count = overlay.original.positions.length / 3;
@@ -60,26 +48,26 @@ test("what is seen of a comparison, and its statement, come where they are asked
   for (const words of ["Your mark was found.", "data:image/png;base64,", "&lt;b&gt;.glb", "meshmark extract it"]) {
     assert.ok(comparison.statement.includes(words), words);
   }
-  assert.ok(!("overlay" in informed.compare(embedding.model, original, key)));
-  assert.equal(informed.compare(embedding.model, original, new Uint8Array(32).fill(6), { overlay: true }).overlay.evidence, null);
+  assert.ok(!("overlay" in meshmark.compare(embedding.model, original, key)));
+  assert.equal(meshmark.compare(embedding.model, original, new Uint8Array(32).fill(6), { overlay: true }).overlay.evidence, null);
 });
 
 test("a suspect that is no glTF is read, and what follows the key is told where it is asked for", () => {
   const positions = new Float64Array([0, 0, 0, 1, 0, 0, 0, 1, 0]);
   const triangles = new Uint32Array([0, 1, 2]);
-  const comparison = informed.compareMesh(positions, triangles, original, key);
+  const comparison = meshmark.compareMesh(positions, triangles, original, key);
   assert.deepEqual(contract.differences("Comparison", comparison), []);
   assert.equal(comparison.verdict, "none");
   assert.ok(!("lnP" in comparison));
-  assert.ok("lnP" in informed.compareMesh(positions, triangles, original, key, { details: true }));
+  assert.ok("lnP" in meshmark.compareMesh(positions, triangles, original, key, { details: true }));
 });
 
 test("each call takes every option that is declared for it, and no other", () => {
   const calls = {
-    CompareOptions: (options) => informed.compare(embedding.model, original, key, options),
-    CompareMeshOptions: (options) => informed.compareMesh(new Float64Array(9), new Uint32Array(3), original, key, options),
-    CompareWithRecordOptions: (options) => informed.compareWithRecord(embedding.model, "{}", key, options),
-    RecordOptions: (options) => informed.record(original, embedding.report, key, options),
+    CompareOptions: (options) => meshmark.compare(embedding.model, original, key, options),
+    CompareMeshOptions: (options) => meshmark.compareMesh(new Float64Array(9), new Uint32Array(3), original, key, options),
+    CompareWithRecordOptions: (options) => meshmark.compareWithRecord(embedding.model, "{}", key, options),
+    RecordOptions: (options) => meshmark.record(original, embedding.report, key, options),
   };
   for (const [type, call] of Object.entries(calls)) {
     assert.throws(() => call({ other: 1 }), (error) => {

@@ -180,8 +180,8 @@ test("where there is no Worker, createClient rejects with a code", async () => {
   await assert.rejects(createClient(), (error) => error instanceof MeshmarkError && error.code === "worker.failed");
 });
 
-/** What only some pages load, each an entry of its own. */
-const MORE = ["elements.js", "informed.js"];
+/** What only some pages load, an entry of its own. */
+const MORE = ["elements.js"];
 
 test("the facade stays within 6 KiB, compressed", (t) => {
   const dist = new URL("dist/", packageFolder);

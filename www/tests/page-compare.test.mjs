@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before } from "node:test";
-import * as informed from "meshmark/informed";
 import * as meshmark from "meshmark";
 import * as attacks from "../app/attacks-wasm/attacks.js";
 import { assertFits, assertNamed, button, check, comeToLook, drop, dropped, fillKey, headline, hold, isSame, looks, NARROW, onDisk, onPage, page, PHONE, picture, result, saved, savedReport, unseen, view } from "./page.mjs";
@@ -14,11 +13,11 @@ let record;
 
 before(async () => {
   await smallModel(); // loads the attacks
-  await informed.init();
+  await meshmark.initFull();
   original = meshmark.demoModel();
   const key = meshmark.deriveKey(OWNER, PASSPHRASE);
   const { model, report } = meshmark.embed(original, TAG, key, { strength: "strong" });
-  record = informed.record(original, report, key, { owner: OWNER, date: "2026-11-29" });
+  record = meshmark.record(original, report, key, { owner: OWNER, date: "2026-11-29" });
   piece = attacks.attack(model, ["crop 30 %", "simplify 50 %", "quantize 10 bits", "similarity"]);
 });
 

@@ -1,14 +1,26 @@
 // The page that is there before its other modules.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { execFileSync, spawnSync } from "node:child_process";
+import { cpSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { launch, serve, SLOW } from "./browser.mjs";
+import { packageFolder } from "./support.mjs";
 
 const app = new URL("../app", import.meta.url);
+
+test("the package compiles before its full module is there", () => {
+  const project = mkdtempSync(join(tmpdir(), "meshmark-early-"));
+  for (const part of ["package.json", "src", "tsconfig.json", "wasm"]) {
+    cpSync(new URL(part, packageFolder), join(project, part), { recursive: true });
+  }
+  const compiler = fileURLToPath(new URL("../node_modules/typescript/bin/tsc", import.meta.url));
+  const { status, stdout } = spawnSync(process.execPath, [compiler, "--project", project], { encoding: "utf8" });
+  assert.equal(status, 0, stdout);
+  rmSync(project, { recursive: true });
+});
 
 test("the page is built before the study and the attacks are, and says so where one is asked for", async () => {
   const outDir = mkdtempSync(join(tmpdir(), "meshmark-early-"));

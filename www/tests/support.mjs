@@ -9,7 +9,7 @@ import * as attacks from "../app/attacks-wasm/attacks.js";
 export const repository = new URL("../../", import.meta.url);
 export const packageFolder = new URL("../meshmark/", import.meta.url);
 export const contractFile = fileURLToPath(new URL("src/wasm/types.d.ts", repository));
-export const copiesFile = fileURLToPath(new URL("src/wasm/copies.d.ts", repository));
+export const fullContractFile = fileURLToPath(new URL("src/wasm/full.d.ts", repository));
 
 /** What a wasm module exports beside its functions: what loads it, and what is run as soon as it is loaded. */
 export const LOADING = ["default", "initSync", "start"];

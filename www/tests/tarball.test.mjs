@@ -27,9 +27,9 @@ after(() => rmSync(project, { recursive: true }));
 
 test("it holds the built files, the module, words and licences, and nothing else", () => {
   const files = packed.files.map(({ path }) => path);
-  const expected = /^(package\.json|README\.md|LICENSE-(MIT|APACHE)|dist\/\w+\.(js|d\.ts)|wasm-codecs\/(codecs\.js|codecs\.d\.ts|codecs_bg\.wasm(\.d\.ts)?)|wasm-copies\/(copies\.js|copies\.d\.ts|copies_bg\.wasm(\.d\.ts)?)|wasm-informed\/(informed\.js|informed\.d\.ts|informed_bg\.wasm(\.d\.ts)?)|wasm\/(meshmark\.js|meshmark\.d\.ts|meshmark_bg\.wasm(\.d\.ts)?))$/;
+  const expected = /^(package\.json|README\.md|LICENSE-(MIT|APACHE)|dist\/\w+\.(js|d\.ts)|wasm-full\/(full\.js|full\.d\.ts|full_bg\.wasm(\.d\.ts)?)|wasm\/(meshmark\.js|meshmark\.d\.ts|meshmark_bg\.wasm(\.d\.ts)?))$/;
   assert.deepEqual(files.filter((file) => !expected.test(file)), []);
-  for (const needed of ["README.md", "LICENSE-MIT", "LICENSE-APACHE", "dist/index.js", "dist/client.js", "dist/worker.js", "wasm/meshmark_bg.wasm", "wasm-codecs/codecs_bg.wasm", "wasm-informed/informed_bg.wasm", "dist/elements.js", "wasm-copies/copies_bg.wasm"]) {
+  for (const needed of ["README.md", "LICENSE-MIT", "LICENSE-APACHE", "dist/index.js", "dist/client.js", "dist/worker.js", "wasm/meshmark_bg.wasm", "wasm-full/full_bg.wasm", "dist/elements.js"]) {
     assert.ok(files.includes(needed), needed);
   }
 });

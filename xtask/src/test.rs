@@ -79,7 +79,7 @@ fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     add(steps, "all floors and keys", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =
-            "cargo clippy --lib --test suite --features wasm-copies,wasm-informed,wasm-study,wasm-attacks -- -Dwarnings";
+            "cargo clippy --lib --test suite --features wasm-full,wasm-study,wasm-attacks -- -Dwarnings";
         log.run(&mut wasm::command(manifest, lint)?, LINT)
     });
     steps.add("wasm tests in Node", &["wasm tests in Chromium"], |log| {

@@ -1,5 +1,5 @@
 /** Check's left side: the suspect, and where it was compared, the suspect laid on its original. */
-import type { Overlay } from "meshmark/informed";
+import type { Overlay } from "meshmark";
 import { find, h, instantiate } from "./dom";
 import type { StageEvents } from "./showing";
 import { Stage } from "./stage";

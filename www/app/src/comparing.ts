@@ -1,6 +1,6 @@
 /** Comparing a suspect with its original, or with a record: the call, and both answers in words. */
 import { MeshmarkError } from "meshmark/client";
-import type { Comparison, Overlay } from "meshmark/informed";
+import type { Comparison, Overlay } from "meshmark";
 import { sha256 } from "./digest";
 import { h } from "./dom";
 import { engine } from "./engine";

@@ -6,6 +6,10 @@
 import { MeshmarkError } from "./error.js";
 import type {
   Capacity,
+  CompareMeshOptions,
+  CompareOptions,
+  CompareWithRecordOptions,
+  Comparison,
   Decompressed,
   DetectMeshOptions,
   DetectOptions,
@@ -14,11 +18,13 @@ import type {
   Extraction,
   Inspection,
   InspectOptions,
+  Marking,
   MeasureMeshOptions,
   MeasureOptions,
   Payload,
   Prepared,
   ReadOptions,
+  RecordOptions,
   Stamped,
   StateReadingOptions,
   TraceEvidenceOptions,
@@ -27,7 +33,6 @@ import type {
   Tracing,
   Verification,
 } from "./index.js";
-import type { CompareMeshOptions, CompareOptions, CompareWithRecordOptions, Comparison, Marking, RecordOptions } from "./informed.js";
 import { Remote, type CallOptions } from "./remote.js";
 
 export { MeshmarkError };
@@ -38,12 +43,8 @@ export interface ClientOptions {
   workerUrl?: string | URL | undefined;
   /** Default: the module of this package. */
   wasmUrl?: string | URL | undefined;
-  /** Default: the module of this package for compressed models. It is fetched when one comes. */
-  codecsUrl?: string | URL | undefined;
-  /** Default: the module of this package that reads with the original. It is fetched when it is asked for. */
-  informedUrl?: string | URL | undefined;
-  /** Default: the module of this package for copies and tracing. It is fetched with the first of those calls. */
-  copiesUrl?: string | URL | undefined;
+  /** Default: the full module of this package. It is fetched when something needs it: a compressed model, an original, a record, copies, a tracing. */
+  fullUrl?: string | URL | undefined;
 }
 
 /** Of `copies`. */
@@ -104,8 +105,8 @@ export interface Client {
  * @throws MeshmarkError `worker.failed` where no worker can be started (Node has none), `init.failed` where the module
  * cannot be loaded
  */
-export async function createClient({ workerUrl, wasmUrl, codecsUrl, informedUrl, copiesUrl }: ClientOptions = {}): Promise<Client> {
-  const setup = { wasmUrl: absolute(wasmUrl), codecsUrl: absolute(codecsUrl), informedUrl: absolute(informedUrl), copiesUrl: absolute(copiesUrl) };
+export async function createClient({ workerUrl, wasmUrl, fullUrl }: ClientOptions = {}): Promise<Client> {
+  const setup = { wasmUrl: absolute(wasmUrl), fullUrl: absolute(fullUrl) };
   const start = () => new Remote(() => startWorker(workerUrl), setup);
   const remote = start();
   const client: Client = {

@@ -6,22 +6,19 @@
 import * as wasm from "../wasm/meshmark.js";
 import { asMeshmarkError, MeshmarkError } from "./error.js";
 import { load, type InitInput, type Loadable } from "./loading.js";
-import type {
-  EmbedOptions,
-  Prepared,
-  Stamped,
-  StateReadingOptions,
-  TraceEvidenceOptions,
-  TraceMeshOptions,
-  TraceOptions,
-  Tracing,
-} from "../wasm/meshmark.js";
+// @ts-ignore It may be built after the package.
+import type * as full from "../wasm-full/full.js";
 
 export { MeshmarkError };
 export type {
   Capacity,
   Carrier,
   CarrierReading,
+  CompareMeshOptions,
+  CompareOptions,
+  CompareWithRecordOptions,
+  ComparingOptions,
+  Comparison,
   Decompressed,
   DetailedExtraction,
   Details,
@@ -36,13 +33,17 @@ export type {
   Input,
   Inspection,
   InspectOptions,
+  Marking,
   MeasureMeshOptions,
   MeasureOptions,
   MeshmarkErrorObject,
   OnProgress,
+  Overlay,
   Payload,
   Prepared,
   ReadOptions,
+  RecordOptions,
+  Sheet,
   Stage,
   Stamped,
   StampReport,
@@ -60,9 +61,7 @@ export type {
 
 export type { InitInput };
 
-type Module = typeof wasm & Loadable;
-
-/** The functions of the module that answers: the first one, or the one with the codecs once that is there. */
+/** The functions of the module that answers: the first one, or the full one once that is there. */
 let current: typeof wasm = wasm;
 
 let starting: Promise<void> | undefined;
@@ -84,73 +83,35 @@ export function init(input?: InitInput): Promise<void> {
 }
 
 async function start(input: InitInput = new URL("../wasm/meshmark_bg.wasm", import.meta.url)): Promise<void> {
-  await load(wasm as Module, input);
+  await load(wasm as typeof wasm & Loadable, input);
   started = true;
 }
 
-let startingCodecs: Promise<void> | undefined;
+let startingFull: Promise<void> | undefined;
+let loadedFull: typeof full | undefined;
 
 /**
- * Loads the module that reads compressed geometry (Draco, meshopt) too, in the place of the first one. Until then such models are refused with
- * `document.compression-unsupported`. The client calls it when a model asks for it.
+ * Loads the full module in the place of the first one. Until then compressed models (Draco, meshopt) are refused with
+ * `document.compression-unsupported`, and the functions at the end of this file throw `init.missing`. The client calls it when it is needed.
  *
  * @param input as for `init`
  * @throws MeshmarkError `init.failed`
  */
-export function initCodecs(input?: InitInput): Promise<void> {
-  startingCodecs ??= startCodecs(input).catch((cause: unknown) => {
-    startingCodecs = undefined;
+export function initFull(input?: InitInput): Promise<void> {
+  startingFull ??= startFull(input).catch((cause: unknown) => {
+    startingFull = undefined;
     const known = asMeshmarkError(cause);
-    const words = `The module for compressed models could not be loaded: ${String(cause)}`;
+    const words = `The full module could not be loaded: ${String(cause)}`;
     throw known instanceof MeshmarkError ? known : new MeshmarkError("init.failed", words, null, { cause });
   });
-  return startingCodecs;
+  return startingFull;
 }
 
-async function startCodecs(input: InitInput = new URL("../wasm-codecs/codecs_bg.wasm", import.meta.url)): Promise<void> {
-  // @ts-ignore It has the types of the first module, and may be built after the package.
-  const codecs = (await import("../wasm-codecs/codecs.js")) as Module;
-  await load(codecs, input);
-  current = copies ?? codecs;
-  started = true;
-}
-
-/** What the module for sellers has beside all that the others have. */
-interface Copies {
-  prepare(model: Uint8Array, key: Uint8Array, options?: EmbedOptions): Prepared;
-  stamp(plan: Uint8Array, number: number): Stamped;
-  trace(model: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceOptions): Tracing;
-  traceMesh(positions: Float64Array, triangles: Uint32Array, key: Uint8Array, numbers: Float64Array, options?: TraceMeshOptions): Tracing;
-  traceEvidence(evidence: Uint8Array, key: Uint8Array, numbers: Float64Array, options?: TraceEvidenceOptions): Tracing;
-  stateReading(model: Uint8Array, key: Uint8Array, options: StateReadingOptions): string;
-  copyNumber(payload: number, key: Uint8Array): number;
-}
-
-let startingCopies: Promise<void> | undefined;
-let copies: (Module & Copies) | undefined;
-
-/**
- * Loads the module that makes copies for buyers and traces them, in the place of the others: it reads compressed geometry too. Until then
- * `prepare`, `stamp`, `trace`, `traceMesh`, `traceEvidence`, `stateReading` and `copyNumber` throw `init.missing`. The client calls it when it is needed.
- *
- * @param input as for `init`
- * @throws MeshmarkError `init.failed`
- */
-export function initCopies(input?: InitInput): Promise<void> {
-  startingCopies ??= startCopies(input).catch((cause: unknown) => {
-    startingCopies = undefined;
-    const known = asMeshmarkError(cause);
-    const words = `The module for copies could not be loaded: ${String(cause)}`;
-    throw known instanceof MeshmarkError ? known : new MeshmarkError("init.failed", words, null, { cause });
-  });
-  return startingCopies;
-}
-
-async function startCopies(input: InitInput = new URL("../wasm-copies/copies_bg.wasm", import.meta.url)): Promise<void> {
-  // @ts-ignore It has the types of the first module and of `Copies`, and may be built after the package.
-  const module = (await import("../wasm-copies/copies.js")) as Module & Copies;
+async function startFull(input: InitInput = new URL("../wasm-full/full_bg.wasm", import.meta.url)): Promise<void> {
+  // @ts-ignore It may be built after the package.
+  const module = (await import("../wasm-full/full.js")) as typeof full & Loadable;
   await load(module, input);
-  current = copies = module;
+  current = loadedFull = module;
   started = true;
 }
 
@@ -166,14 +127,14 @@ function guarded<N extends Name>(name: N): (typeof wasm)[N] {
   }) as (typeof wasm)[N];
 }
 
-/** The same of what sellers need. */
-function guardedCopies<N extends keyof Copies>(name: N): Copies[N] {
+/** The same of what only the full module has. */
+function guardedFull<N extends Exclude<keyof typeof full, "default" | "initSync">>(name: N): (typeof full)[N] {
   return checked(() => {
-    if (!copies) {
-      throw new MeshmarkError("init.missing", "Call initCopies() and wait for it first.");
+    if (!loadedFull) {
+      throw new MeshmarkError("init.missing", "Call initFull() and wait for it first.");
     }
-    return copies[name];
-  }) as Copies[N];
+    return loadedFull[name];
+  }) as (typeof full)[N];
 }
 
 function checked(find: () => unknown): (...args: unknown[]) => unknown {
@@ -206,10 +167,14 @@ export const capacity = guarded("capacity");
 export const demoModel = guarded("demoModel");
 export const version = guarded("version");
 
-export const prepare = guardedCopies("prepare");
-export const stamp = guardedCopies("stamp");
-export const trace = guardedCopies("trace");
-export const traceMesh = guardedCopies("traceMesh");
-export const traceEvidence = guardedCopies("traceEvidence");
-export const stateReading = guardedCopies("stateReading");
-export const copyNumber = guardedCopies("copyNumber");
+export const compare = guardedFull("compare");
+export const compareMesh = guardedFull("compareMesh");
+export const compareWithRecord = guardedFull("compareWithRecord");
+export const record = guardedFull("record");
+export const prepare = guardedFull("prepare");
+export const stamp = guardedFull("stamp");
+export const trace = guardedFull("trace");
+export const traceMesh = guardedFull("traceMesh");
+export const traceEvidence = guardedFull("traceEvidence");
+export const stateReading = guardedFull("stateReading");
+export const copyNumber = guardedFull("copyNumber");

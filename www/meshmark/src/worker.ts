@@ -1,6 +1,9 @@
 /** The worker behind `createClient`: a real file, so that it runs under a strict Content-Security-Policy. */
 import {
   capacity,
+  compare,
+  compareMesh,
+  compareWithRecord,
   copyNumber,
   decompress,
   deriveKey,
@@ -11,13 +14,13 @@ import {
   extract,
   extractMany,
   init,
-  initCodecs,
-  initCopies,
+  initFull,
   inspect,
   measure,
   measureMesh,
   MeshmarkError,
   prepare,
+  record,
   stamp,
   stateReading,
   trace,
@@ -29,31 +32,17 @@ import {
 } from "./index.js";
 import { answer } from "./remote.js";
 
-let codecsUrl: string | undefined;
-let informedUrl: string | undefined;
+let fullUrl: string | undefined;
 
-type Informed = typeof import("./informed.js");
-
-/** A function of the module that reads with the original, which is loaded when it is asked for. */
-function withOriginal(name: "compare" | "compareMesh" | "compareWithRecord" | "record") {
-  return async (...args: unknown[]): Promise<unknown> => {
-    const module: Informed = await import("./informed.js");
-    await module.init(informedUrl);
-    return (module[name] as (...args: unknown[]) => unknown)(...args);
-  };
-}
-
-let copiesUrl: string | undefined;
-
-/** A function of the module that sellers need, which is loaded with the first call. */
-function selling<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
+/** A function of the full module, which is loaded with the first call. */
+function full<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
   return async (...args: Arguments): Promise<Result> => {
-    await initCopies(copiesUrl);
+    await initFull(fullUrl);
     return f(...args);
   };
 }
 
-/** A function that reads models: where one is compressed, again with the module that has the codecs. */
+/** A function that reads models: where one is compressed, again with the full module, which has the codecs. */
 function reading<Arguments extends unknown[], Result>(f: (...args: Arguments) => Result) {
   return async (...args: Arguments): Promise<Result> => {
     try {
@@ -63,7 +52,7 @@ function reading<Arguments extends unknown[], Result>(f: (...args: Arguments) =>
         throw error;
       }
     }
-    await initCodecs(codecsUrl);
+    await initFull(fullUrl);
     return f(...args);
   };
 }
@@ -83,24 +72,22 @@ answer(
     decompress: reading(decompress),
     inspect: reading(inspect),
     capacity: reading(capacity),
-    compare: withOriginal("compare"),
-    compareMesh: withOriginal("compareMesh"),
-    compareWithRecord: withOriginal("compareWithRecord"),
-    record: withOriginal("record"),
+    compare: full(compare),
+    compareMesh: full(compareMesh),
+    compareWithRecord: full(compareWithRecord),
+    record: full(record),
     demoModel,
     version,
-    prepare: selling(prepare),
-    stamp: selling(stamp),
-    trace: selling(trace),
-    traceMesh: selling(traceMesh),
-    traceEvidence: selling(traceEvidence),
-    stateReading: selling(stateReading),
-    copyNumber: selling(copyNumber),
+    prepare: full(prepare),
+    stamp: full(stamp),
+    trace: full(trace),
+    traceMesh: full(traceMesh),
+    traceEvidence: full(traceEvidence),
+    stateReading: full(stateReading),
+    copyNumber: full(copyNumber),
   },
   (setup) => {
-    codecsUrl = setup?.["codecsUrl"];
-    informedUrl = setup?.["informedUrl"];
-    copiesUrl = setup?.["copiesUrl"];
+    fullUrl = setup?.["fullUrl"];
     return init(setup?.["wasmUrl"]);
   },
 );

@@ -15,7 +15,7 @@ let browser;
 
 before(async () => {
   install();
-  await meshmark.initCopies();
+  await meshmark.initFull();
   browser = await launch();
 });
 

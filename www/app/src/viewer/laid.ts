@@ -1,5 +1,5 @@
 /** A suspect that lies on its original: both in one place, and in colours how far they are from each other and what speaks for the mark. */
-import type { Overlay, Sheet } from "meshmark/informed";
+import type { Overlay, Sheet } from "meshmark";
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, MeshStandardMaterial, Sphere, SRGBColorSpace, Vector3 } from "three";
 import { colorAt } from "./colormap";
 import { WIRES } from "./layer";

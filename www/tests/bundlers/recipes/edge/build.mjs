@@ -9,4 +9,4 @@ await build({
   outdir: "dist",
   external: ["*.wasm", "*.plan"], // the runtime's own modules
 });
-await copyFile(fileURLToPath(import.meta.resolve("meshmark/copies.wasm")), "dist/copies.wasm");
+await copyFile(fileURLToPath(import.meta.resolve("meshmark/full.wasm")), "dist/full.wasm");

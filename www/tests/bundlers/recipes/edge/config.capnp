@@ -8,7 +8,7 @@ const config :Workerd.Config = (
 const stamp :Workerd.Worker = (
   modules = [
     (name = "worker.js", esModule = embed "dist/worker.js"),
-    (name = "meshmark/copies.wasm", wasm = embed "dist/copies.wasm"),
+    (name = "meshmark/full.wasm", wasm = embed "dist/full.wasm"),
     (name = "model.plan", data = embed "dist/model.plan"),
   ],
   compatibilityDate = "2026-11-01",

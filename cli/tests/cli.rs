@@ -867,7 +867,7 @@ fn a_copy_for_each_buyer_is_traced_and_stated() {
     assert_eq!(made["numWeaker"], 0);
     let sha256 = made["copies"][1]["markedSha256"].as_str().unwrap();
     let ledger = fs::read_to_string(folder.path("sold/ledger.csv")).unwrap();
-    let triangles = made["specimen"]["triangles"].as_u64().unwrap();
+    let triangles = made["copies"][1]["triangles"].as_u64().unwrap();
     let line = format!("2,<script>alert(1)</script>,model.2.glb,{sha256},2026-11-29,{triangles}");
     assert!(ledger.lines().any(|other| other == line), "{ledger}");
     assert!(ledger.contains("\"Grace, the first\""), "{ledger}");

@@ -88,7 +88,6 @@ pub(super) fn embed_in(
         number: payload.map(Payload::number),
         vertices: host.positions.len(),
         moved_vertices: distortion.num_moved,
-        triangles: host.triangles.len(),
         diagonal: diagonal(&host.positions),
         rms_rel: distortion.rms_rel,
         max_rel: distortion.max_rel,

@@ -266,8 +266,6 @@ pub struct EmbedReport {
     pub vertices: usize,
     /// How many of them moved.
     pub moved_vertices: usize,
-    /// Triangles of the scene. Where a ledger keeps them, a tracing says how many a leaked copy has left.
-    pub triangles: usize,
     /// Diagonal of the host's bounding box, in scene units.
     pub diagonal: f64,
     /// RMS displacement over all vertices, as a fraction of that diagonal.

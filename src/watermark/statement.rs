@@ -25,7 +25,7 @@ pub struct StatedFile {
 pub struct Ledger {
     /// What it calls some buyers, by their numbers.
     pub names: Vec<(u64, String)>,
-    /// How many triangles the model had that the copies were made of, as [`EmbedReport`](super::EmbedReport) says; `None` where the ledger does not.
+    /// How many triangles the model had that the copies were made of, as [`StampReport`](super::StampReport) says; `None` where the ledger does not.
     pub triangles: Option<u64>,
 }
 

@@ -5,7 +5,10 @@ use crate::failure::Failure;
 use crate::file::{load_text, open};
 use crate::suspect::Suspect;
 use clap::Args;
-use meshmark::{Comparison, Key, Overlay, compare_overlaid, compare_overlaid_with_record};
+use meshmark::{
+    Comparison, Key, Overlay, Payload, compare_overlaid, compare_overlaid_with_record,
+    verify_with_original, verify_with_record,
+};
 use std::path::{Path, PathBuf};
 
 /// The one or the other, or neither.
@@ -32,6 +35,34 @@ pub struct Compared<'a> {
 }
 
 impl Informed {
+    /// Tests a suspect for an expected payload with what there is; `None` where there is nothing.
+    pub fn verify(
+        &self,
+        suspect: &Suspect,
+        key: &Key,
+        expected: Payload,
+        clock: &mut Clock,
+    ) -> Result<Option<Comparison>, Failure> {
+        if let Some(path) = &self.original {
+            let original = open(path)?;
+            let found = suspect.found()?;
+            let suspect = found.suspect(clock);
+            return Ok(Some(verify_with_original(
+                suspect,
+                original.unwatched(),
+                key,
+                expected,
+            )?));
+        }
+        let Some(path) = &self.record else {
+            return Ok(None);
+        };
+        let record = load_text(path)?;
+        let found = suspect.found()?;
+        let suspect = found.suspect(clock);
+        Ok(Some(verify_with_record(suspect, &record, key, expected)?))
+    }
+
     /// Reads a suspect with what there is; `None` where there is nothing.
     pub fn compare(
         &self,

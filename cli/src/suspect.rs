@@ -6,8 +6,8 @@ use crate::file::{Found, load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, Verdict, detect,
-    detect_with_local, extract, measure, trace, trace_evidence, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, detect, detect_with_local,
+    extract, measure, trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 

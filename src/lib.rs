@@ -73,7 +73,7 @@ pub use watermark::{
     compare, compare_overlaid, compare_overlaid_with_record, compare_with_record, decompress,
     detect, embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
     prepare, read_note, record, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
-    verify,
+    verify, verify_with_original, verify_with_record,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

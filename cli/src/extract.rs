@@ -46,7 +46,7 @@ impl Extract {
             let repeated = format!("{repeated} {}", compared.argument);
             self.statement
                 .write(finding, &looked_at, &key, &self.owner, &repeated)?;
-            return self.telling.of_comparison(compared.answer, None, clock);
+            return self.telling.of_comparison(compared.answer, clock);
         }
         let extraction = self.suspect.examine(&key, None, self.local, &mut clock)?;
         let finding = Finding::Reading(&extraction);

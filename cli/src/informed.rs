@@ -6,8 +6,9 @@ use crate::file::{load_text, open};
 use crate::suspect::Suspect;
 use clap::Args;
 use meshmark::{
-    Comparison, Error, Key, Model, Overlay, Suspect as Shown, Tracing, compare_overlaid,
-    compare_overlaid_with_record, trace_overlaid, trace_overlaid_with_record,
+    Comparison, Error, Key, Model, Overlay, Payload, Suspect as Shown, Tracing, compare_overlaid,
+    compare_overlaid_with_record, trace_overlaid, trace_overlaid_with_record, verify_with_original,
+    verify_with_record,
 };
 use std::path::{Path, PathBuf};
 
@@ -35,6 +36,28 @@ pub struct Informed<'a, T> {
 }
 
 impl InformedArguments {
+    /// Tests a suspect for an expected payload with what there is; `None` where there is nothing.
+    pub fn verify(
+        &self,
+        suspect: &Suspect,
+        key: &Key,
+        expected: Payload,
+        clock: &mut Clock,
+    ) -> Result<Option<Comparison>, Failure> {
+        let verified = self.read(
+            suspect,
+            clock,
+            |suspect, original| {
+                Ok((
+                    verify_with_original(suspect, original, key, expected)?,
+                    None,
+                ))
+            },
+            |suspect, record| Ok((verify_with_record(suspect, record, key, expected)?, None)),
+        )?;
+        Ok(verified.map(|verified| verified.answer))
+    }
+
     /// Reads a suspect with what there is; `None` where there is nothing.
     pub fn compare(
         &self,

@@ -92,3 +92,32 @@ fn main() -> ExitCode {
         Err(failure) => failure.tell(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use std::collections::BTreeSet;
+
+    /// Every command that the documents show is one that there is, and COMMANDS.md shows every one.
+    #[test]
+    fn documented_commands_are_understood() {
+        let readme = include_str!("../../README.md");
+        let commands = include_str!("../../docs/COMMANDS.md");
+        let lines = [readme, commands]
+            .map(|text| text.lines().filter(|line| line.starts_with("meshmark ")));
+        let mut shown = BTreeSet::new();
+        for line in lines.into_iter().flatten() {
+            let words = shlex::split(line).unwrap();
+            if let Err(error) = Arguments::try_parse_from(&words) {
+                panic!("{line}\n{error}");
+            }
+            shown.insert(words[1].clone());
+        }
+        let names = Arguments::command();
+        let names = names
+            .get_subcommands()
+            .map(|command| command.get_name().to_owned());
+        assert_eq!(shown, names.filter(|name| name != "help").collect());
+    }
+}

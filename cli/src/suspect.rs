@@ -6,8 +6,8 @@ use crate::file::{Found, load, open_suspect};
 use crate::report::Report;
 use clap::Args;
 use meshmark::{
-    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, Verdict, detect,
-    detect_with_local, extract, measure, trace, trace_evidence, verify,
+    Comparison, Evidence, Extraction, Input, Key, Payload, Tracing, detect, detect_with_local,
+    extract, measure, trace, trace_evidence, verify,
 };
 use std::path::{Path, PathBuf};
 
@@ -120,18 +120,9 @@ impl Telling {
         Report::judged(&told, verdict, clock)
     }
 
-    /// The same of a reading with the original; where a payload was expected, another one is not what was looked for.
-    pub fn of_comparison(
-        &self,
-        comparison: Comparison,
-        expected: Option<Payload>,
-        clock: Clock,
-    ) -> Result<Report, Failure> {
-        let is_it = |it: Payload| comparison.number == Some(it.number());
-        let verdict = match expected.is_none_or(is_it) {
-            true => comparison.verdict,
-            false => Verdict::None,
-        };
+    /// The same of a reading with the original.
+    pub fn of_comparison(&self, comparison: Comparison, clock: Clock) -> Result<Report, Failure> {
+        let verdict = comparison.verdict;
         let told = match self.details {
             true => comparison.with_details(),
             false => comparison,

@@ -30,11 +30,11 @@ impl Verify {
     pub fn run(self) -> Result<Report, Failure> {
         let mut clock = Clock::new();
         let (payload, key) = (self.payload.read()?, self.owner.key()?);
-        // All payloads are charged here, as if none had been expected.
-        if let Some(compared) = self.informed.compare(&self.suspect, &key, &mut clock)? {
-            return self
-                .telling
-                .of_comparison(compared.answer, Some(payload), clock);
+        let informed = self
+            .informed
+            .verify(&self.suspect, &key, payload, &mut clock)?;
+        if let Some(comparison) = informed {
+            return self.telling.of_comparison(comparison, clock);
         }
         let extraction = self
             .suspect

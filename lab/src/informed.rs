@@ -1,11 +1,13 @@
 //! What the original, or the record of an embedding, adds to a reading: one table, of the attacks that blind reading is weakest in.
 
-use crate::case::Case;
-use crate::models::Model;
+use crate::case::{Case, Marked};
+use crate::models::{Model, gathered};
+use crate::real::Tool;
 use crate::seed::Seed;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{chain, crop, remesh, similarity, simplify, step};
-use meshmark::internals::mesh::Mesh;
+use meshmark::internals::geometry::diagonal;
+use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::to_glb;
 use meshmark::{
     Comparison, RecordOptions, Shape, Strength, Verdict, compare, compare_with_record, detect,
@@ -17,10 +19,49 @@ use std::time::Instant;
 /// Length of a side after remeshing, as a fraction of the diagonal.
 const REMESHED: f64 = 0.01;
 
+/// What other people's programs are told, where they are there.
+const TOOLS: [&str; 6] = [
+    "glTF-Transform simplify --ratio 0.5 --error 1",
+    "gltfpack -si 0.5",
+    "MeshLab apply_coord_laplacian_smoothing",
+    "MeshLab compute_normal_per_vertex generate_surface_reconstruction_screened_poisson depth=8",
+    "Open3D filter_smooth_laplacian number_of_iterations=3",
+    "Open3D filter_smooth_taubin number_of_iterations=10",
+];
+
 type Make = fn(&Case, &Mesh, u64) -> Result<Mesh, String>;
 
+/// A row: what is done to the marked mesh, here or by a program.
+enum Row<'a> {
+    Own(&'a str, Make),
+    Tool(&'a Tool),
+}
+
+impl Row<'_> {
+    fn name(&self) -> &str {
+        match self {
+            Row::Own(name, _) => name,
+            Row::Tool(tool) => &tool.name,
+        }
+    }
+
+    fn make(&self, case: &Case, marked: &Marked, seed: u64) -> Result<Mesh, String> {
+        let tool = match self {
+            Row::Own(_, make) => return make(case, &marked.mesh, seed),
+            Row::Tool(tool) => tool,
+        };
+        let scratch =
+            std::env::temp_dir().join(format!("meshmark-informed-{}-{seed}", std::process::id()));
+        let said = |error| format!("{}: {error}", scratch.display());
+        std::fs::create_dir_all(&scratch).map_err(said)?;
+        let made = tool.run(&marked.bytes, &scratch);
+        std::fs::remove_dir_all(&scratch).map_err(said)?;
+        gathered(&made?)
+    }
+}
+
 /// The rows: what is done to the marked mesh.
-const ROWS: [(&str, Make); 16] = [
+const ROWS: [(&str, Make); 19] = [
     ("none", |_, marked, _| Ok(marked.clone())),
     (
         "crop 30 %, simplify 50 %, glTF quantize 10 bits",
@@ -67,7 +108,18 @@ const ROWS: [(&str, Make); 16] = [
     ("resampled distance 0.8 %", |_, marked, seed| {
         by_name(marked, &["resampled distance 0.8 %"], seed)
     }),
+    ("posed 30 degrees, simplify 50 %", |_, marked, seed| {
+        by_name(marked, &["posed 30 degrees", "simplify 50 %"], seed)
+    }),
+    (
+        "two pieces of it beside a third thing, simplify 50 %",
+        |_, marked, _| Ok(kit(&simplify(marked, 0.5))),
+    ),
     ("unmarked", |case, _, _| Ok(case.host.clone())),
+    (
+        "unmarked, posed 30 degrees, simplify 50 %",
+        |case, _, seed| by_name(&case.host, &["posed 30 degrees", "simplify 50 %"], seed),
+    ),
     ("wrong key", |case, _, _| case.by_another(1)),
 ];
 
@@ -75,6 +127,35 @@ fn by_name(mesh: &Mesh, names: &[&str], seed: u64) -> Result<Mesh, String> {
     let named = |name: &&str| step(name).ok_or_else(|| format!("there is no attack {name}"));
     let steps = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
     Ok(chain(mesh, &steps, seed))
+}
+
+/// Two ends of a model, moved and turned against each other, beside something that is not of it.
+fn kit(mesh: &Mesh) -> Mesh {
+    let size = diagonal(&mesh.positions);
+    let centre = mesh.positions.iter().sum::<DVec3>() / mesh.positions.len().max(1) as f64;
+    let along = DVec3::new(0.6, 0.7, 0.2).normalize();
+    let end = |direction: DVec3| {
+        let is_there = |v: &u32| (mesh.positions[*v as usize] - centre).dot(direction) > 0.1 * size;
+        mesh.part(
+            mesh.triangles
+                .iter()
+                .copied()
+                .filter(|t| t.iter().all(is_there)),
+        )
+    };
+    let turned = |mesh: Mesh, shift: DVec3| {
+        let turn = DMat3::from_rotation_y(0.7);
+        let positions = mesh.positions.iter().map(|p| turn * *p + shift);
+        mesh.with_positions(positions.collect())
+    };
+    let third = shapes::relief_sphere(60, 90);
+    let small = 0.4 * size / diagonal(&third.positions);
+    let third = third.with_positions(third.positions.iter().map(|p| *p * small).collect());
+    Mesh::joined([
+        turned(end(along), DVec3::X * (2.0 * size)),
+        end(-along),
+        turned(third, DVec3::ONE * size),
+    ])
 }
 
 fn mirrored(mesh: &Mesh) -> Mesh {
@@ -127,14 +208,15 @@ impl Said {
     }
 }
 
-/// Blind, with the original, with the record.
-type Cell = [Said; 3];
+/// Blind, with the original, with the record; `None` where a program did not do what it was told.
+type Cell = Option<[Said; 3]>;
 
 /// Prints the table, row after row: each model once at a strength, under keys of its own.
 pub fn table(
     models: &[Model],
     (name, strength): (&'static str, Strength),
     seed: &Seed,
+    tools: &[Tool],
 ) -> Result<String, String> {
     let cases = models.par_iter();
     let cases = cases.map(|model| Case::new(model, (name, strength), 0, seed));
@@ -149,32 +231,34 @@ pub fn table(
         names.len(),
         names.join(", "),
     );
-    for row in &ROWS {
-        let cells = cases.par_iter().map(|case| cells_of(case, row));
+    let tools = tools.iter().filter(|tool| TOOLS.contains(&&*tool.name));
+    let own = ROWS.iter().map(|(name, make)| Row::Own(name, *make));
+    for row in own.chain(tools.map(Row::Tool)) {
+        let cells = cases.par_iter().map(|case| cells_of(case, &row));
         let cells = cells.collect::<Result<Vec<Cell>, _>>()?;
-        println!("{}", line(row.0, &names, &cells));
+        println!("{}", line(row.name(), &names, &cells));
     }
     Ok(String::new())
 }
 
 fn line(row: &str, names: &[&str], cells: &[Cell]) -> String {
-    let found = |by: usize| cells.iter().filter(|cell| cell[by].is_right).count();
+    let made = || cells.iter().flatten();
+    let found = |by: usize| made().filter(|cell| cell[by].is_right).count();
     let median = |by: usize, of: fn(&Said) -> f64| {
-        let mut values: Vec<f64> = cells.iter().map(|cell| of(&cell[by])).collect();
+        let mut values: Vec<f64> = made().map(|cell| of(&cell[by])).collect();
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     };
     let missed: Vec<String> = names
         .iter()
         .zip(cells)
-        .filter(|(_, cell)| !cell[1].is_right)
-        .map(
-            |(name, cell)| match (cell[1].is_mark, cell[1].is_same_shape) {
-                (true, _) => format!("{name} (p)"),
-                (_, false) => format!("{name} (another shape)"),
-                _ => (*name).to_owned(),
-            },
-        )
+        .filter_map(|(name, cell)| match cell {
+            None => Some(format!("{name} (not made)")),
+            Some([_, said, _]) if said.is_right => None,
+            Some([_, said, _]) if said.is_mark => Some(format!("{name} (p)")),
+            Some([_, said, _]) if !said.is_same_shape => Some(format!("{name} (another shape)")),
+            Some(_) => Some((*name).to_owned()),
+        })
         .collect();
     format!(
         "| {row} | {} | {} | {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.1} | {} |",
@@ -190,10 +274,17 @@ fn line(row: &str, names: &[&str], cells: &[Cell]) -> String {
     )
 }
 
-fn cells_of(case: &Case, (name, make): &(&str, Make)) -> Result<Cell, String> {
+fn cells_of(case: &Case, row: &Row) -> Result<Cell, String> {
+    let name = row.name();
     let marked = case.marked.as_ref().map_err(Clone::clone)?;
     let purpose = format!("{}, {name}", case.purpose);
-    let suspect = make(case, &marked.mesh, case.seed.number(&purpose, 0))?;
+    let suspect = match row.make(case, marked, case.seed.number(&purpose, 0)) {
+        Err(said) if matches!(row, Row::Tool(_)) => {
+            eprintln!("{}, {name}: {said}", case.model.name);
+            return Ok(None);
+        }
+        suspect => suspect?,
+    };
     let suspect = to_glb(&similarity(&suspect, case.seed.number(&purpose, 1)));
     let said = |error: meshmark::Error| format!("{}, {name}: {error}", case.model.name);
     let number = marked.report.number;
@@ -208,5 +299,5 @@ fn cells_of(case: &Case, (name, make): &(&str, Make)) -> Result<Cell, String> {
     let kept = record(&case.model.bytes, &marked.report, &case.key, &options).map_err(said)?;
     let start = Instant::now();
     let recorded = compare_with_record(&suspect, &kept, &case.key).map_err(said)?;
-    Ok([blind, informed, Said::of(&recorded, number, start)])
+    Ok(Some([blind, informed, Said::of(&recorded, number, start)]))
 }

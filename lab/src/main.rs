@@ -86,8 +86,9 @@ struct Arguments {
     /// Instead of the grid: what people who have no key learn from marked plain models, and do to them; prints tables.
     #[arg(long, group = "instead", conflicts_with_all = GRID)]
     adversary: bool,
-    /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table.
-    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = ["full", "real"])]
+    /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table. Of plain models, or
+    /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.
+    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = ["full"])]
     informed: Option<String>,
     /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
     #[arg(long, group = "instead", conflicts_with_all = GRID)]
@@ -116,6 +117,9 @@ const STRENGTHS: [(&str, Strength); 3] = [
     ("balanced", Strength::BALANCED),
     ("strong", Strength::STRONG),
 ];
+
+/// Vertices without which a file is not read with the original: low-poly models are.
+const FEWEST_INFORMED: usize = 200;
 
 /// Keys that the study's errors are averaged over.
 const STUDY_KEYS: u32 = 2;
@@ -176,13 +180,21 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if let Some(name) = &arguments.informed {
         let strength = STRENGTHS.into_iter().find(|(own, _)| own == name);
         let strength = strength.ok_or_else(|| format!("there is no strength {name}"))?;
-        let (mut models, _) = models::all(arguments.models.as_deref())?;
         let most = match arguments.quick {
             true => Size::Quick,
             false => Size::Full,
         };
-        models.retain(|model| model.size <= most && model.class == models::Class::Plain);
-        return informed::table(&models, strength, &Seed::new(seed));
+        let mut models = match &arguments.models {
+            Some(folder) => models::of_folder(folder, FEWEST_INFORMED)?,
+            None => {
+                let (mut models, _) = models::all(None)?;
+                models.retain(|model| model.class == models::Class::Plain);
+                models
+            }
+        };
+        models.retain(|model| model.size <= most);
+        let tools = real_tools(arguments, &target)?;
+        return informed::table(&models, strength, &Seed::new(seed), &tools);
     }
     if arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;

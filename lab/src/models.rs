@@ -60,6 +60,13 @@ pub fn all(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String> {
     Ok((models, unread))
 }
 
+/// The files of a folder that have so many vertices, but no generated models.
+pub fn of_folder(folder: &Path, fewest: usize) -> Result<Vec<Model>, String> {
+    let read = files(folder)?.into_iter().map(|path| read(&path, fewest));
+    // What cannot be read is no model to mark.
+    Ok(read.flatten().flatten().collect())
+}
+
 /// The study's models: plain shapes from files, and two that are generated with four times the faces that the paper's has.
 pub fn of_study(folder: Option<&Path>) -> Result<Vec<Model>, String> {
     let (mut models, _) = from_files(folder)?;
@@ -94,7 +101,7 @@ fn from_files(folder: Option<&Path>) -> Result<(Vec<Model>, Vec<String>), String
     };
     let (mut models, mut unread) = (Vec::new(), Vec::new());
     for path in paths {
-        match read(&path) {
+        match read(&path, FEWEST_VERTICES) {
             Ok(model) => models.extend(model),
             Err(error) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -151,7 +158,7 @@ fn extension(path: &Path) -> &str {
 }
 
 /// A model, unless it is too small.
-fn read(path: &Path) -> Result<Option<Model>, String> {
+fn read(path: &Path, fewest: usize) -> Result<Option<Model>, String> {
     let bytes = match extension(path) {
         "obj" => to_glb(&read_obj(path)?),
         _ => std::fs::read(path).map_err(|error| error.to_string())?,
@@ -170,7 +177,7 @@ fn read(path: &Path) -> Result<Option<Model>, String> {
         name if USUAL.contains(&name) => Size::Usual,
         _ => Size::Full,
     };
-    Ok((mesh.positions.len() >= FEWEST_VERTICES).then(|| Model {
+    Ok((mesh.positions.len() >= fewest).then(|| Model {
         class,
         bytes,
         size,

@@ -58,7 +58,7 @@ pub use pose::Pose;
 pub use quadrature::{Quadrature, Sample};
 pub use quadric::{Quadric, collapse_costs};
 pub use quality::Quality;
-pub use registration::{LEAST_NEAR, Original, Registration, Search};
+pub use registration::{Assembly, LEAST_NEAR, Original, Registration, Search};
 pub use repeats::without_repeats;
 pub use residual::{Observation, Shown, Views, affine_fit};
 pub use roughness::roughness;

@@ -1,5 +1,6 @@
-//! Points that are near others, in a k-d tree.
+//! Points that are near others: the nearest in a k-d tree, those within a radius in cells.
 
+use glam::DVec3;
 use kdtree::KdTree;
 use kdtree::distance::squared_euclidean;
 
@@ -23,11 +24,49 @@ impl<const N: usize> Near<N> {
         let found = found.unwrap_or_default().into_iter();
         found.map(|(square, number)| (square, *number)).collect()
     }
+}
 
-    /// Those within a radius, the nearest first: squared distance and number.
-    pub fn within(&self, point: [f64; N], radius: f64) -> Vec<(f64, u32)> {
-        let found = self.0.within(&point, radius * radius, &squared_euclidean);
-        let found = found.unwrap_or_default().into_iter();
-        found.map(|(square, number)| (square, *number)).collect()
+/// Points of space in cells as wide as a radius: what is within it is in 27 of them.
+pub struct Around {
+    radius: f64,
+    /// Every point's cell and number, in order.
+    cells: Vec<([i64; 3], u32)>,
+    points: Vec<DVec3>,
+}
+
+impl Around {
+    /// Sorts points.
+    pub fn new(points: Vec<DVec3>, radius: f64) -> Around {
+        let named = points.iter().zip(0..);
+        let mut cells: Vec<_> = named
+            .map(|(p, number)| (cell(*p, radius), number))
+            .collect();
+        cells.sort_unstable();
+        Around {
+            radius,
+            cells,
+            points,
+        }
     }
+
+    /// Those within the radius of a point: squared distance and number, cell after cell.
+    pub fn of(&self, point: DVec3) -> Vec<(f64, u32)> {
+        let [x, y, z] = cell(point, self.radius);
+        let mut found = Vec::new();
+        for (x, y) in (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y))) {
+            let first = self.cells.partition_point(|(own, _)| *own < [x, y, z - 1]);
+            let row = self.cells[first..].iter();
+            for &(_, number) in row.take_while(|(own, _)| *own <= [x, y, z + 1]) {
+                let square = self.points[number as usize].distance_squared(point);
+                if square <= self.radius * self.radius {
+                    found.push((square, number));
+                }
+            }
+        }
+        found
+    }
+}
+
+fn cell(point: DVec3, width: f64) -> [i64; 3] {
+    (point / width).floor().to_array().map(|x| x as i64)
 }

@@ -127,10 +127,7 @@ impl<'a> Shown<'a> {
         let chords = Chords::of(original, views, &moved);
         let d = original.diagonal;
         let feet = views.points.iter().zip(0u32..).filter_map(|(point, name)| {
-            let nearest = surface.nearest(point.position)?;
-            if nearest.distance > FARTHEST * d {
-                return None;
-            }
+            let nearest = surface.nearest_within(point.position, FARTHEST * d)?;
             if nearest.is_at_boundary(&open) {
                 return None;
             }

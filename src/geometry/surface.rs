@@ -117,9 +117,9 @@ impl<'a> Surface<'a> {
         self.grow(range.start + half..range.end, centres);
     }
 
-    /// The point nearest to `from`, and the unit normal of its triangle; `None` for a mesh without area.
-    pub fn foot(&self, from: DVec3) -> Option<(DVec3, DVec3)> {
-        let nearest = self.nearest(from)?;
+    /// The point nearest to `from`, and the unit normal of its triangle; `None` where it is not nearer than a distance.
+    pub fn foot(&self, from: DVec3, within: f64) -> Option<(DVec3, DVec3)> {
+        let nearest = self.nearest_within(from, within)?;
         let [a, b, c] = self
             .mesh
             .corners(self.mesh.triangles[nearest.triangle as usize]);
@@ -128,13 +128,19 @@ impl<'a> Surface<'a> {
 
     /// The point nearest to `from`; `None` for a mesh without area.
     pub fn nearest(&self, from: DVec3) -> Option<Nearest> {
+        self.nearest_within(from, f64::INFINITY)
+    }
+
+    /// The same, `None` where it is not nearer than a distance: what is far away is told at once.
+    pub fn nearest_within(&self, from: DVec3, within: f64) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;
+        let mut least = within;
         let mut open = Vec::with_capacity(64);
         if let Some(root) = self.nodes.first() {
             open.push((root.distance_squared(from), 0));
         }
         while let Some((square, name)) = open.pop() {
-            if best.is_some_and(|best| square >= best.distance * best.distance) {
+            if square >= least * least {
                 continue;
             }
             match &self.nodes[name].kind {
@@ -144,7 +150,8 @@ impl<'a> Surface<'a> {
                         let weights = nearest_weights(from, corners);
                         let point = (0..3).map(|i| weights[i] * corners[i]).sum::<DVec3>();
                         let distance = point.distance(from);
-                        if best.is_none_or(|best| distance < best.distance) {
+                        if distance < least {
+                            least = distance;
                             best = Some(Nearest {
                                 point,
                                 distance,

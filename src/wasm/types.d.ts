@@ -429,7 +429,9 @@ export interface Comparison {
   covered: number;
   /** Whether the suspect is a mirror image. */
   isMirrored: boolean;
-  /** What takes the suspect onto the original: three columns of a linear map, and a shift, in the original's scene units. */
+  /** In how many parts the suspect lies there, each moved by itself: 1 where it lies as a whole, 0 where it lies nowhere. */
+  numParts: number;
+  /** What takes the suspect, or the largest of its parts, onto the original: three columns of a linear map, and a shift, in the original's scene units. */
   motion: number[][] | null;
   /** Natural logarithm of the bound of the false-positive probability, every choice charged. There where found or present, or asked for. */
   lnP?: number;

@@ -83,6 +83,7 @@ mod tests {
             near: 1.0,
             covered,
             is_mirrored: false,
+            num_parts: 1,
             motion: Some([
                 [0.0, x, 0.0],
                 [-y, 0.0, 0.0],

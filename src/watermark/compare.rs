@@ -11,7 +11,7 @@ use crate::carrier::{Carrier, Frames, Host, Reading, Seen};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE};
 use crate::document::Document;
 use crate::geometry::{
-    LEAST_NEAR, Leeway, Observation, Original, Registration, Search, Shown, Views, kept,
+    LEAST_NEAR, Leeway, Motion, Observation, Original, Registration, Search, Shown, Views, kept,
 };
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -21,8 +21,10 @@ use std::f64::consts::LN_2;
 
 /// What is less near than this is not read.
 const LEAST_READ: f64 = 0.5;
-/// A whole copy that lies on the original as closely as this lies nowhere else.
+/// A whole copy that lies on the original as closely as this lies nowhere else, and what lies there as nearly need not be taken apart.
 const SURE: f64 = 0.9;
+/// What is less near than this as a whole is not taken apart, unless it is of several parts.
+const LEAST_APART: f64 = 0.2;
 
 /// Reads a suspect with the original: the model as it was before it was marked, as [`embed`](crate::embed) got it.
 ///
@@ -37,7 +39,22 @@ pub fn compare<'a, 'b>(
     original: impl Into<Model<'b>>,
     key: &Key,
 ) -> Result<Comparison, Error> {
-    Ok(compare_in(suspect.into(), &original.into(), key)?.comparison)
+    Ok(compare_in(suspect.into(), &original.into(), key, None)?.comparison)
+}
+
+/// Tests a suspect for one payload that was expected before it was looked at, with the original: what [`verify`](crate::verify) is to
+/// [`extract`](crate::extract). It alone is charged, and not all payloads, so less has to be left of the mark. Where the suspect has another payload of
+/// the key, the verdict is [`Verdict::Partial`].
+///
+/// # Errors
+/// As [`compare`].
+pub fn verify_with_original<'a, 'b>(
+    suspect: impl Into<Suspect<'a>>,
+    original: impl Into<Model<'b>>,
+    key: &Key,
+    expected: Payload,
+) -> Result<Comparison, Error> {
+    Ok(compare_in(suspect.into(), &original.into(), key, Some(expected))?.comparison)
 }
 
 /// As [`compare`], with the suspect laid on the original, to be looked at; `None` for another shape.
@@ -49,7 +66,7 @@ pub fn compare_overlaid<'a, 'b>(
     original: impl Into<Model<'b>>,
     key: &Key,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    Ok(compare_in(suspect.into(), &original.into(), key)?.overlaid())
+    Ok(compare_in(suspect.into(), &original.into(), key, None)?.overlaid())
 }
 
 /// A comparison, and what it was of.
@@ -73,6 +90,11 @@ impl Compared {
             .is_some_and(|witness| witness != Witness::Blind);
         let is_same = comparison.shape == Shape::Same;
         let motion = comparison.motion.filter(|_| is_same);
+        // Parts were moved already.
+        let motion = motion.map(|motion| match comparison.num_parts > 1 {
+            true => columns(&Motion::IDENTITY),
+            false => motion,
+        });
         let overlay =
             motion.map(|m| Overlay::new(&original, &suspect, m, is_heard.then_some(&spoken)));
         (comparison, overlay)
@@ -89,8 +111,13 @@ impl Compared {
     }
 }
 
-fn compare_in(mut suspect: Suspect, model: &Model, key: &Key) -> Result<Compared, Error> {
-    hear_with_original(&mut suspect, model, key, None)?.compared(suspect, key)
+fn compare_in(
+    mut suspect: Suspect,
+    model: &Model,
+    key: &Key,
+    expected: Option<Payload>,
+) -> Result<Compared, Error> {
+    hear_with_original(&mut suspect, model, key, expected, None)?.compared(suspect, key, expected)
 }
 
 /// What was read with the original, or with its record, and what with.
@@ -102,20 +129,28 @@ pub(super) struct Informed {
 
 impl Informed {
     /// With what is read blind, where that may say more.
-    pub(super) fn compared(self, mut suspect: Suspect, key: &Key) -> Result<Compared, Error> {
+    pub(super) fn compared(
+        self,
+        mut suspect: Suspect,
+        key: &Key,
+        expected: Option<Payload>,
+    ) -> Result<Compared, Error> {
         let blind = match self.heard.ln_p_payload <= LN_P_FOUND {
             true => None,
-            false => Some(read_blind(&self.suspect, key, &mut suspect)?),
+            false => Some(read_blind(&self.suspect, key, expected, &mut suspect)?),
         };
         suspect.step(Stage::Test, 1.0)?;
         Ok(self.concluded(blind))
     }
 
+    /// What is said of it. Of a suspect that was taken apart, what is shown is the parts where they lie.
     pub(super) fn concluded(self, blind: Option<Blind>) -> Compared {
+        let comparison = conclude(&self.heard, blind);
+        let assembled = self.heard.assembled.filter(|_| comparison.num_parts > 1);
         Compared {
-            comparison: conclude(&self.heard, blind),
+            comparison,
             original: self.original,
-            suspect: self.suspect,
+            suspect: assembled.unwrap_or(self.suspect),
             spoken: self.heard.spoken,
         }
     }
@@ -126,6 +161,7 @@ pub(super) fn hear_with_original(
     suspect: &mut Suspect,
     model: &Model,
     key: &Key,
+    expected: Option<Payload>,
     loudest: Option<&mut Loudest>,
 ) -> Result<Informed, Error> {
     suspect.step(Stage::Read, 0.0)?;
@@ -133,7 +169,7 @@ pub(super) fn hear_with_original(
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
     let heard = with_host(&scene, &options_of_original(), |host| {
-        hear(host, &mesh, key, loudest, suspect)
+        hear(host, &mesh, key, expected, loudest, suspect)
     })??;
     Ok(Informed {
         heard,
@@ -171,10 +207,14 @@ pub(super) struct Heard {
     pub ln_p_presence: f64,
     pub ln_p_payload: f64,
     pub payload: Option<Payload>,
+    /// Another payload than the expected one, which speaks louder, and its bound.
+    pub other: Option<(Payload, f64)>,
     pub witness: Witness,
     /// The likeliest way in which the suspect lies on the original, and the one that was read.
     pub first: Option<Lay>,
     pub read: Option<Lay>,
+    /// The suspect's parts where they lie, where it was taken apart.
+    pub assembled: Option<Mesh>,
     /// What windows said for the mark.
     pub spoken: Spoken,
 }
@@ -182,21 +222,40 @@ pub(super) struct Heard {
 /// How a suspect lies on the original.
 #[derive(Clone, Copy)]
 pub(super) struct Lay {
+    /// The whole, or the largest of its parts.
     pub registration: Registration,
+    pub num_parts: usize,
     pub covered: f64,
 }
 
 /// The same, and what is seen of it.
 struct Lying<'a> {
     registration: Registration,
+    num_parts: usize,
     shown: Shown<'a>,
     kept: Option<Vec<Observation>>,
 }
 
-impl Lying<'_> {
+impl<'a> Lying<'a> {
+    /// A suspect that a motion takes onto the original, or parts of one that lie there already; `None` where too little does.
+    fn new(
+        (original, views): (&'a Original, &'a Views),
+        (mesh, motion): (&Mesh, &Motion),
+        registration: Registration,
+        num_parts: usize,
+    ) -> Option<Lying<'a>> {
+        Some(Lying {
+            registration,
+            num_parts,
+            shown: Shown::new(original, views, mesh, motion)?,
+            kept: kept(original, mesh, motion),
+        })
+    }
+
     fn lay(&self) -> Lay {
         Lay {
             registration: self.registration,
+            num_parts: self.num_parts,
             covered: self.shown.covered(),
         }
     }
@@ -207,6 +266,7 @@ fn hear(
     host: &Host,
     suspect: &Mesh,
     key: &Key,
+    expected: Option<Payload>,
     mut loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
@@ -214,31 +274,11 @@ fn hear(
     let views = Views::new(host.mesh);
     let frames = Frames::new(host);
     let mut reader = None;
-    let mut scales = Scales::new(key);
+    let mut scales = Scales::new(key).expecting(expected);
     let mut first: Option<Lay> = None;
     let mut lyings: Vec<Lying> = Vec::new();
-    // A half for reading without the original; and each search has a third of the other half, whether it is made or not.
-    let ln_num_searches = LN_2 + libm::log(Search::ALL.len() as f64);
-    for search in Search::ALL {
-        let known = lyings.len();
-        for registration in original.registrations(suspect, search) {
-            let is_near = registration.near >= LEAST_READ;
-            let shown = || Shown::new(&original, &views, suspect, &registration.motion);
-            if let Some(shown) = is_near.then(shown).flatten() {
-                let kept = kept(&original, suspect, &registration.motion);
-                lyings.push(Lying {
-                    registration,
-                    shown,
-                    kept,
-                });
-            }
-        }
-        let new = &lyings[known..];
-        if let Some(lying) = new.first()
-            && first.is_none_or(|first| first.registration.near < lying.registration.near)
-        {
-            first = Some(lying.lay());
-        }
+    let ln_num_searches = ln_num_searches();
+    let mut read = |new: &[Lying], known: usize, progress: &mut dyn Progress| {
         let observe: Vec<_> = new.iter().flat_map(views_of).collect();
         let seen: Vec<&Seen> = observe.iter().map(|observe| &**observe).collect();
         let mut is_settled = false;
@@ -256,14 +296,48 @@ fn hear(
             })?;
         }
         is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
+        Ok::<bool, Error>(is_settled)
+    };
+    let mut starts = Vec::new();
+    let mut is_done = false;
+    for search in Search::ALL {
+        let known = lyings.len();
+        let registrations = original.registrations(suspect, search);
+        starts.extend(&registrations);
+        let near = registrations.into_iter().filter(|r| r.near >= LEAST_READ);
+        let at = (&original, &views);
+        lyings.extend(near.filter_map(|r| Lying::new(at, (suspect, &r.motion), r, 1)));
+        let new = &lyings[known..];
+        first = nearer(first, new);
         let is_sure = |lying: &Lying| {
             lying.registration.exact > SURE && lying.shown.covered() > SURE && known == 0
         };
-        if is_settled || new.first().is_some_and(is_sure) {
+        is_done = read(new, known, progress)? || new.first().is_some_and(is_sure);
+        if is_done {
             break;
         }
     }
+    let mut assembled = None;
+    if !is_done
+        && is_to_be_taken_apart(suspect, &starts)
+        && let Some(assembly) = original.assembled(suspect, &starts)
+    {
+        let known = lyings.len();
+        let parts = (&assembly.mesh, &Motion::IDENTITY);
+        let (registration, num_parts) = (assembly.registration, assembly.num_parts);
+        lyings.extend(Lying::new(
+            (&original, &views),
+            parts,
+            registration,
+            num_parts,
+        ));
+        first = nearer(first, &lyings[known..]);
+        read(&lyings[known..], known, progress)?;
+        assembled = Some(assembly.mesh);
+    }
+    let scales = scales.conclude();
     Ok(Heard {
+        other: scales.other,
         ln_p_presence: scales.ln_p_presence,
         ln_p_payload: scales.ln_p_payload,
         payload: scales.payload,
@@ -273,8 +347,29 @@ fn hear(
         },
         first,
         read: lyings.get(scales.list / 2).map(Lying::lay),
+        assembled,
         spoken: scales.spoken,
     })
+}
+
+/// What each search is charged: a half of the probability is for reading without the original; and each search, and the parts of a suspect that is taken
+/// apart, share the other half, whether they are made or not.
+pub(super) fn ln_num_searches() -> f64 {
+    LN_2 + libm::log(Search::ALL.len() as f64 + 1.0)
+}
+
+/// Whether a suspect may have parts that lie in ways of their own, by how it lies as a whole.
+pub(super) fn is_to_be_taken_apart(suspect: &Mesh, starts: &[Registration]) -> bool {
+    let near = starts.iter().map(|start| start.near).fold(0.0, f64::max);
+    near < SURE && (near >= LEAST_APART || Original::has_large_parts(suspect))
+}
+
+fn nearer(first: Option<Lay>, new: &[Lying]) -> Option<Lay> {
+    let new = new.first().map(Lying::lay);
+    match (first, new) {
+        (Some(first), Some(new)) if first.registration.near >= new.registration.near => Some(first),
+        (first, new) => new.or(first),
+    }
 }
 
 /// The two ways to look at a suspect that lies on the original: at its surface, and at the vertices that it kept.
@@ -289,9 +384,10 @@ fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
 pub(super) fn read_blind(
     mesh: &Mesh,
     key: &Key,
+    expected: Option<Payload>,
     progress: &mut dyn Progress,
 ) -> Result<Blind, Error> {
-    let judge = Judge::new(key, None, Input::Model).one_of(2);
+    let judge = Judge::new(key, expected, Input::Model).one_of(2);
     let mut readings = Carrier::STANDARD.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
         let is_settled = |reading: &Reading| judge.is_settled(reading);
@@ -320,6 +416,7 @@ impl Blind {
 pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
     let own = match heard {
         _ if heard.ln_p_payload <= LN_P_FOUND => (Verdict::Found, heard.ln_p_payload),
+        _ if heard.other.is_some() => (Verdict::Partial, heard.ln_p_presence),
         _ if heard.ln_p_presence <= LN_P_FOUND => (Verdict::Present, heard.ln_p_presence),
         _ if heard.ln_p_presence.min(heard.ln_p_payload) <= LN_P_TRACE => (
             Verdict::Partial,
@@ -343,6 +440,8 @@ pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
         ),
         _ => {
             let payload = heard.payload.filter(|_| own.0 == Verdict::Found);
+            let other = heard.other.filter(|(_, ln_p)| *ln_p <= LN_P_FOUND);
+            let payload = payload.or(other.map(|(other, _)| other));
             (own.0, own.1, payload, heard.witness)
         }
     };
@@ -353,21 +452,26 @@ pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
     Comparison {
         verdict,
         shape,
-        sentence: sentence(verdict, shape),
+        sentence: match verdict == Verdict::Partial && heard.other.is_some() {
+            true => "The model carries a mark of this key, but with another payload.",
+            false => sentence(verdict, shape),
+        },
         tag: payload.and_then(Payload::tag),
         number: payload.map(Payload::number),
         witness: is_said(verdict).then_some(witness),
         near: lay.map_or(0.0, |lay| lay.registration.near),
         covered: lay.map_or(0.0, |lay| lay.covered),
+        num_parts: lay.map_or(0, |lay| lay.num_parts),
         is_mirrored: lay.is_some_and(|lay| lay.registration.motion.is_mirrored()),
-        motion: lay.map(|lay| {
-            let motion = lay.registration.motion;
-            let [x, y, z] = motion.linear.to_cols_array_2d();
-            [x, y, z, motion.translation.to_array()]
-        }),
+        motion: lay.map(|lay| columns(&lay.registration.motion)),
         ln_p,
         shows_ln_p: is_said(verdict),
     }
+}
+
+fn columns(motion: &Motion) -> [[f64; 3]; 4] {
+    let [x, y, z] = motion.linear.to_cols_array_2d();
+    [x, y, z, motion.translation.to_array()]
 }
 
 fn sentence(verdict: Verdict, shape: Shape) -> &'static str {

@@ -31,7 +31,7 @@ mod unshown;
 mod weigh;
 
 pub use capacity::{Capacity, Holds, capacity};
-pub use compare::{compare, compare_overlaid};
+pub use compare::{compare, compare_overlaid, verify_with_original};
 pub use copies::{Plan, StampReport, Stamped, prepare};
 pub use embed::{Embedding, embed};
 pub use error::{Advice, Error, PlanError, RecordError};
@@ -48,7 +48,9 @@ pub use options::{EmbedOptions, Strength};
 pub use overlay::{Overlay, Sheet};
 #[cfg(all(target_arch = "wasm32", feature = "wasm-full"))]
 pub(crate) use record::record_of;
-pub use record::{RecordOptions, compare_overlaid_with_record, compare_with_record, record};
+pub use record::{
+    RecordOptions, compare_overlaid_with_record, compare_with_record, record, verify_with_record,
+};
 pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
     Shape, Unshown, Verdict, Witness,

@@ -2,13 +2,17 @@
 //!
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
-use super::compare::{Compared, Heard, Informed, Lay, options_of_original, with_host};
+use super::compare::{
+    Compared, Heard, Informed, Lay, is_to_be_taken_apart, ln_num_searches, options_of_original,
+    with_host,
+};
 use super::loudest::Loudest;
 use super::overlay::Overlay;
 use super::report::{Comparison, EmbedReport, Witness};
 use super::weigh::Scales;
 use super::{Error, Model, RecordError, Suspect};
 use crate::attack::simplify_to;
+use crate::bits::Payload;
 use crate::carrier::{Frames, Recorded, StoredError, take};
 use crate::document::Document;
 use crate::geometry::{Motion, Original, Search};
@@ -20,7 +24,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::LN_2;
 
 /// What a record is called by itself.
 const KIND: &str = "meshmark record";
@@ -166,7 +169,20 @@ pub fn compare_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<Comparison, Error> {
-    Ok(compare_in(suspect.into(), record, key)?.comparison)
+    Ok(compare_in(suspect.into(), record, key, None)?.comparison)
+}
+
+/// As [`verify_with_original`](crate::verify_with_original), with the record of an embedding instead of the original.
+///
+/// # Errors
+/// As [`compare_with_record`].
+pub fn verify_with_record<'a>(
+    suspect: impl Into<Suspect<'a>>,
+    record: &str,
+    key: &Key,
+    expected: Payload,
+) -> Result<Comparison, Error> {
+    Ok(compare_in(suspect.into(), record, key, Some(expected))?.comparison)
 }
 
 /// As [`compare_with_record`], with the suspect laid on the recorded shape, to be looked at; `None` for another shape. Where they differ by less
@@ -179,11 +195,16 @@ pub fn compare_overlaid_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    Ok(compare_in(suspect.into(), record, key)?.overlaid_on_record())
+    Ok(compare_in(suspect.into(), record, key, None)?.overlaid_on_record())
 }
 
-fn compare_in(mut suspect: Suspect, record: &str, key: &Key) -> Result<Compared, Error> {
-    hear_with_record(&mut suspect, record, key, None)?.compared(suspect, key)
+fn compare_in(
+    mut suspect: Suspect,
+    record: &str,
+    key: &Key,
+    expected: Option<Payload>,
+) -> Result<Compared, Error> {
+    hear_with_record(&mut suspect, record, key, expected, None)?.compared(suspect, key, expected)
 }
 
 /// Reads a suspect with a record. `loudest` hears all that is read, where it is asked whose copies the suspect was made of.
@@ -191,6 +212,7 @@ pub(super) fn hear_with_record(
     suspect: &mut Suspect,
     record: &str,
     key: &Key,
+    expected: Option<Payload>,
     loudest: Option<&mut Loudest>,
 ) -> Result<Informed, Error> {
     let (shape, recorded) = opened(record, key)?;
@@ -198,8 +220,9 @@ pub(super) fn hear_with_record(
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
     let original = shape.mesh();
+    let heard = hear(&original, &recorded, &mesh, key, expected, loudest, suspect)?;
     Ok(Informed {
-        heard: hear(&original, &recorded, &mesh, key, loudest, suspect)?,
+        heard,
         original,
         suspect: mesh,
     })
@@ -210,26 +233,17 @@ fn hear(
     recorded: &Recorded,
     suspect: &Mesh,
     key: &Key,
+    expected: Option<Payload>,
     mut loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(shape);
-    let mut scales = Scales::new(key);
+    let mut scales = Scales::new(key).expecting(expected);
     let mut lays: Vec<Lay> = Vec::new();
-    let ln_num_searches = LN_2 + libm::log(Search::ALL.len() as f64);
-    for search in Search::ALL {
-        crate::progress::step(progress, Stage::Test, 0.0)?;
-        let known = lays.len();
-        let found = original.registrations(suspect, search).into_iter();
-        let near = found.filter(|registration| registration.near >= LEAST_READ);
-        lays.extend(near.map(|registration| Lay {
-            registration,
-            covered: original.covered_by(suspect, &registration.motion),
-        }));
-        let new = lays[known..].iter();
-        let motions: Vec<Motion> = new.map(|lay| lay.registration.motion).collect();
+    let ln_num_searches = ln_num_searches();
+    let mut read = |mesh: &Mesh, motions: &[Motion], known: usize| {
         let mut is_settled = false;
-        recorded.read(suspect, &motions, key, &mut |mut way| {
+        recorded.read(mesh, motions, key, &mut |mut way| {
             way.list = 2 * (known + way.list);
             way.ln_num_tests += ln_num_searches;
             let is_enough = scales.hear(&way);
@@ -240,18 +254,53 @@ fn hear(
             is_settled
         });
         is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
+        is_settled
+    };
+    let mut starts = Vec::new();
+    let mut is_settled = false;
+    for search in Search::ALL {
+        crate::progress::step(progress, Stage::Test, 0.0)?;
+        let known = lays.len();
+        let registrations = original.registrations(suspect, search);
+        starts.extend(&registrations);
+        let near = registrations.into_iter().filter(|r| r.near >= LEAST_READ);
+        lays.extend(near.map(|registration| Lay {
+            registration,
+            num_parts: 1,
+            covered: original.covered_by(suspect, &registration.motion),
+        }));
+        let new = lays[known..].iter();
+        let motions: Vec<Motion> = new.map(|lay| lay.registration.motion).collect();
+        is_settled = read(suspect, &motions, known);
         if is_settled {
             break;
         }
     }
+    let mut assembled = None;
+    if !is_settled
+        && is_to_be_taken_apart(suspect, &starts)
+        && let Some(assembly) = original.assembled(suspect, &starts)
+    {
+        let known = lays.len();
+        lays.push(Lay {
+            registration: assembly.registration,
+            num_parts: assembly.num_parts,
+            covered: original.covered_by(&assembly.mesh, &Motion::IDENTITY),
+        });
+        read(&assembly.mesh, &[Motion::IDENTITY], known);
+        assembled = Some(assembly.mesh);
+    }
     let by_near = |a: &&Lay, b: &&Lay| a.registration.near.total_cmp(&b.registration.near);
+    let scales = scales.conclude();
     Ok(Heard {
+        other: scales.other,
         ln_p_presence: scales.ln_p_presence,
         ln_p_payload: scales.ln_p_payload,
         payload: scales.payload,
         witness: Witness::Surface,
         first: lays.iter().max_by(by_near).copied(),
         read: lays.get(scales.list / 2).copied(),
+        assembled,
         spoken: scales.spoken,
     })
 }

@@ -199,9 +199,9 @@ pub struct Comparison {
     pub shape: Shape,
     /// Both in words.
     pub sentence: &'static str,
-    /// The payload as a tag, where it is found.
+    /// The payload as a tag, where it is found. Where another one was expected, the verdict is [`Verdict::Partial`].
     pub tag: Option<String>,
-    /// The payload as a number, where it is found.
+    /// The payload as a number, likewise.
     pub number: Option<u64>,
     /// What told of the mark, where it is found or present.
     pub witness: Option<Witness>,
@@ -211,7 +211,9 @@ pub struct Comparison {
     pub covered: f64,
     /// Whether the suspect is a mirror image.
     pub is_mirrored: bool,
-    /// What takes the suspect onto the original: three columns of a linear map, and a shift in the original's scene units. `None` where it lies
+    /// In how many parts the suspect lies there, each moved by itself: 1 where it lies as a whole, 0 where it lies nowhere.
+    pub num_parts: usize,
+    /// What takes the suspect, or the largest of its parts, onto the original: three columns of a linear map, and a shift in the original's scene units. `None` where it lies
     /// nowhere.
     pub motion: Option<[[f64; 3]; 4]>,
     pub(super) ln_p: f64,
@@ -235,7 +237,7 @@ impl Comparison {
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let num_details = usize::from(self.shows_ln_p);
-        let mut fields = serializer.serialize_struct("Comparison", 10 + num_details)?;
+        let mut fields = serializer.serialize_struct("Comparison", 11 + num_details)?;
         fields.serialize_field("verdict", &self.verdict)?;
         fields.serialize_field("shape", &self.shape)?;
         fields.serialize_field("sentence", &self.sentence)?;
@@ -245,6 +247,7 @@ impl Serialize for Comparison {
         fields.serialize_field("near", &self.near)?;
         fields.serialize_field("covered", &self.covered)?;
         fields.serialize_field("isMirrored", &self.is_mirrored)?;
+        fields.serialize_field("numParts", &self.num_parts)?;
         fields.serialize_field("motion", &self.motion)?;
         if self.shows_ln_p {
             fields.serialize_field("lnP", &self.ln_p)?;

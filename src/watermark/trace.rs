@@ -136,7 +136,7 @@ pub fn trace_overlaid<'a, 'b>(
 ) -> Result<(Tracing, Option<Overlay>), Error> {
     let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
     let heard = Some(&mut loudest);
-    let informed = hear_with_original(&mut suspect, &original.into(), key, heard)?;
+    let informed = hear_with_original(&mut suspect, &original.into(), key, None, heard)?;
     let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
     Ok((tracing, compared.overlaid().1))
 }
@@ -154,7 +154,7 @@ pub fn trace_overlaid_with_record<'a>(
 ) -> Result<(Tracing, Option<Overlay>), Error> {
     let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
     let heard = Some(&mut loudest);
-    let informed = hear_with_record(&mut suspect, record, key, heard)?;
+    let informed = hear_with_record(&mut suspect, record, key, None, heard)?;
     let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
     Ok((tracing, compared.overlaid_on_record().1))
 }
@@ -172,9 +172,10 @@ fn conclude_informed(
     let reading = Judge::new(key, None, Input::Model)
         .one_of(2)
         .conclude(&readings);
+    let num_triangles = informed.suspect.triangles.len();
     let compared = informed.concluded(Some(Blind::of(&reading)));
     let mut tracing = conclude(&testimonies(&readings, loudest), reading, key, numbers)?;
-    tracing.triangles = Some(compared.suspect.triangles.len());
+    tracing.triangles = Some(num_triangles);
     tracing.hear(&compared.comparison);
     suspect.step(Stage::Test, 1.0)?;
     Ok((tracing, compared))

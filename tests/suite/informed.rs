@@ -1,8 +1,8 @@
 //! Reading with the original, and with the record of an embedding.
 
 use crate::support::fixtures::{asteroid, key, marked, payload};
-use glam::DVec3;
-use meshmark::internals::attack::{crop, quantize, remesh, similarity, simplify};
+use glam::{DMat3, DVec3};
+use meshmark::internals::attack::{bend, crop, quantize, remesh, similarity, simplify};
 use meshmark::internals::carrier::{Frames, Host, Seen};
 use meshmark::internals::code::{Codeword, Symbol};
 use meshmark::internals::detection::{ln_p_of_errors, union};
@@ -11,8 +11,8 @@ use meshmark::internals::geometry::{Bounds, Leeway, Original, Parts, Search, Sho
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    Comparison, Embedding, RecordOptions, Shape, Verdict, Witness, compare, compare_overlaid,
-    compare_with_record, record,
+    Comparison, Embedding, Payload, RecordOptions, Shape, Verdict, Witness, compare,
+    compare_overlaid, compare_with_record, record, verify_with_original, verify_with_record,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -100,6 +100,88 @@ fn informed_tells_an_unmarked_copy_from_another_shape() {
         "near {}",
         answer.near
     );
+}
+
+/// Two ends of a mesh, the first turned and moved away.
+fn two_pieces(mesh: &Mesh) -> Mesh {
+    let along = DVec3::new(0.6, 0.7, 0.2).normalize();
+    let end = |direction: DVec3| {
+        let is_there = |v: &u32| mesh.positions[*v as usize].dot(direction) > 0.2;
+        mesh.part(
+            mesh.triangles
+                .iter()
+                .copied()
+                .filter(|t| t.iter().all(is_there)),
+        )
+    };
+    let turn = DMat3::from_rotation_y(0.7);
+    let first = end(along);
+    let turned = first.positions.iter().map(|p| turn * *p + DVec3::X * 5.0);
+    Mesh::joined([first.with_positions(turned.collect()), end(-along)])
+}
+
+/// What one motion does not lay on the original is taken apart: limbs in another pose, and pieces that were put together anew.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_takes_apart_what_lies_in_several_ways() {
+    let (original, marked, mesh) = case();
+    let options = RecordOptions::default();
+    let kept = record(&original, &marked.report, &key(1), &options).unwrap();
+    let kit = simplify(&two_pieces(&mesh), 0.3);
+    let knot = shapes::torus_knot(40, 12);
+    let far = knot.positions.iter().map(|p| *p * 0.3 + DVec3::Y * 5.0);
+    let kit = Mesh::joined([kit, knot.with_positions(far.collect())]);
+    for (name, suspect) in [
+        ("posed", simplify(&bend(&mesh, 30.0), 0.5)),
+        ("put together", kit),
+    ] {
+        let suspect = to_glb(&similarity(&suspect, 5));
+        let (answer, overlay) = compare_overlaid(&suspect, &original, &key(1)).unwrap();
+        assert_found(&answer, name);
+        let overlay = overlay.unwrap();
+        let all = overlay.additions.len() as f64;
+        let near = overlay.additions.iter().filter(|d| **d < 0.006).count() as f64 / all;
+        assert!(answer.num_parts == 1 || near > 0.9, "{name}: {near}");
+        let wrong = compare(&suspect, &original, &key(2)).unwrap();
+        assert_eq!(wrong.verdict, Verdict::None, "{name}");
+        assert!(wrong.num_parts > 1 && wrong.near > 0.6, "{name}: {wrong:?}");
+        let answer = compare_with_record(&suspect, &kept, &key(1)).unwrap();
+        assert_found(&answer, &format!("{name}, record"));
+    }
+}
+
+/// One payload is tested, and charged for one: a wrong one is not found beside a right key.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_charges_one_payload_where_one_is_expected() {
+    let (original, marked, mesh) = case();
+    let options = RecordOptions::default();
+    let kept = record(&original, &marked.report, &key(1), &options).unwrap();
+    let suspect = to_glb(&similarity(&simplify(&crop(&mesh, 0.3, 3), 0.5), 4));
+    let wrong = Payload::from_tag("ADA-2").unwrap();
+    let gain = Payload::BITS as f64 * std::f64::consts::LN_2 - (5.0f64 / 3.0).ln();
+    let verify = |expected| {
+        [
+            verify_with_original(&suspect, &original, &key(1), expected).unwrap(),
+            verify_with_record(&suspect, &kept, &key(1), expected).unwrap(),
+        ]
+    };
+    let read = [
+        compare(&suspect, &original, &key(1)).unwrap(),
+        compare_with_record(&suspect, &kept, &key(1)).unwrap(),
+    ];
+    for (answer, read) in verify(payload()).iter().zip(&read) {
+        assert_found(answer, "expected");
+        let gained = read.ln_p() - answer.ln_p();
+        assert!((gained - gain).abs() < 1e-6, "{gained}, not {gain}");
+    }
+    for answer in verify(wrong) {
+        assert_eq!(answer.verdict, Verdict::Partial, "{answer:?}");
+        assert_eq!(
+            answer.number,
+            Some(payload().number()),
+            "the one that is there"
+        );
+        assert!(answer.sentence.contains("another payload"));
+    }
 }
 
 /// What a person is shown: the piece where it was cut out, with the mark's evidence there and nowhere else.

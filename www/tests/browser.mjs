@@ -11,6 +11,9 @@ const ARGUMENTS = [
   "--use-gl=angle",
   "--enable-unsafe-swiftshader",
   "--ignore-gpu-blocklist",
+  // What is not WebGL is drawn faster without a graphics processor than with one that is simulated.
+  "--disable-gpu-rasterization",
+  "--disable-gpu-compositing",
   "--disable-quic",
   "--no-first-run",
   "--disable-background-networking",

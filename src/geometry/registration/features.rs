@@ -3,7 +3,7 @@
 
 use super::points::Points;
 use crate::geometry::Motion;
-use crate::geometry::near::Near;
+use crate::geometry::near::Around;
 use crate::geometry::similarity::fitted;
 use crate::random::Random;
 use glam::DVec3;
@@ -11,6 +11,10 @@ use std::f64::consts::{PI, TAU};
 
 const BINS: usize = 11;
 const LEN: usize = 3 * BINS;
+/// What a processor does side by side.
+const LANES: usize = 4;
+/// Three histograms, one after the other, and zeros.
+type Feature = [[f32; LANES]; LEN.div_ceil(LANES)];
 /// The radius on the suspect, as a share of the root of its area.
 const RADIUS: f64 = 0.2;
 /// Radii on the original, as shares of the root of its area: which one fits says how large the piece is.
@@ -31,7 +35,7 @@ const NORMALS: f64 = 0.3;
 /// What a surface looks like about each of some points.
 pub struct Look {
     points: Vec<(DVec3, DVec3)>,
-    features: Vec<[f32; LEN]>,
+    features: Vec<Feature>,
     radius: f64,
 }
 
@@ -49,11 +53,8 @@ pub fn look_of_suspect(cloud: &Points, area: f64) -> Look {
 impl Look {
     fn new(cloud: &Points, radius: f64) -> Look {
         let points = thinned(cloud, SPACING * radius, SMOOTHING * radius);
-        let near = Near::new(points.iter().map(|(p, _)| p.to_array()));
-        let around: Vec<Vec<(f64, u32)>> = points
-            .iter()
-            .map(|(p, _)| near.within(p.to_array(), radius))
-            .collect();
+        let near = Around::new(points.iter().map(|(p, _)| *p).collect(), radius);
+        let around: Vec<Vec<(f64, u32)>> = points.iter().map(|(p, _)| near.of(*p)).collect();
         let simple: Vec<[f64; LEN]> = points
             .iter()
             .zip(&around)
@@ -72,12 +73,13 @@ impl Look {
                     .for_each(|(s, t)| *s += 0.3 * weight * t);
             }
             // Roots make the Euclidean distance Hellinger's.
-            let mut feature = [0.0f32; LEN];
+            let mut feature = Feature::default();
             for third in 0..3 {
                 let range = third * BINS..(third + 1) * BINS;
                 let total: f64 = sum[range.clone()].iter().sum();
                 for bin in range {
-                    feature[bin] = (sum[bin] / total.max(1e-300)).sqrt() as f32;
+                    feature[bin / LANES][bin % LANES] =
+                        (sum[bin] / total.max(1e-300)).sqrt() as f32;
                 }
             }
             feature
@@ -117,11 +119,7 @@ impl Look {
         for (own, feature) in (0..).zip(&self.features) {
             let mut best = [(f32::INFINITY, 0u32); 2];
             for (name, theirs) in (0..).zip(&other.features) {
-                let square: f32 = feature
-                    .iter()
-                    .zip(theirs)
-                    .map(|(a, b)| (a - b) * (a - b))
-                    .sum();
+                let square = distance_squared(feature, theirs);
                 if square < best[0].0 {
                     best = [(square, name), best[0]];
                 } else if square < best[1].0 {
@@ -172,6 +170,16 @@ impl Look {
     }
 }
 
+fn distance_squared(a: &Feature, b: &Feature) -> f32 {
+    let mut sums = [0.0f32; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += (a[lane] - b[lane]) * (a[lane] - b[lane]);
+        }
+    }
+    sums.iter().sum()
+}
+
 /// One point for each cell that has any, with the mean normal about it.
 fn thinned(cloud: &Points, cell: f64, radius: f64) -> Vec<(DVec3, DVec3)> {
     let mut cells = std::collections::BTreeMap::<[i64; 3], (DVec3, f64)>::new();
@@ -181,15 +189,15 @@ fn thinned(cloud: &Points, cell: f64, radius: f64) -> Vec<(DVec3, DVec3)> {
         sum.0 += *p;
         sum.1 += 1.0;
     }
-    let near = Near::new(cloud.positions.iter().map(|p| p.to_array()));
+    let near = Around::new(cloud.positions.clone(), radius);
     let mut points = Vec::with_capacity(cells.len());
     for (sum, count) in cells.into_values() {
-        let centre = sum / count;
-        let Some(&(_, first)) = near.nearest(centre.to_array(), 1).first() else {
+        let around = near.of(sum / count);
+        // A cell's mean is within the radius of the points that it is of: its diagonal is no longer.
+        let Some(&(_, first)) = around.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             continue;
         };
         let own = cloud.normals[first as usize];
-        let around = near.within(centre.to_array(), radius);
         let others = around
             .iter()
             .map(|&(_, other)| cloud.normals[other as usize]);

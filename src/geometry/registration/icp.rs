@@ -70,11 +70,10 @@ fn step(
     let mut pairs = Vec::with_capacity(points.positions.len());
     for (position, normal) in points.positions.iter().zip(&points.normals) {
         let at = motion.of(*position);
-        let Some((foot, plane)) = surface.foot(at) else {
+        let Some((foot, plane)) = surface.foot(at, 2.0 * cap) else {
             continue;
         };
-        let agrees = (turned * *normal).normalize_or_zero().dot(plane) > AGREE;
-        if agrees && foot.distance(at) < 2.0 * cap {
+        if (turned * *normal).normalize_or_zero().dot(plane) > AGREE {
             pairs.push((at, plane, plane.dot(foot - at)));
         }
     }

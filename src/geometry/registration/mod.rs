@@ -6,9 +6,11 @@
 //! | `points` | what stands for a suspect |
 //! | `features` | where a piece may lie |
 //! | `icp` | from nearly right to right |
+//! | `apart` | a suspect whose parts lie in ways of their own |
 //!
 //! Points of the suspect are held against the original, and not the other way round: so it does not matter how much was cut off.
 
+mod apart;
 mod features;
 mod icp;
 mod moments;
@@ -16,6 +18,7 @@ mod points;
 
 use super::{Motion, Surface, diagonal};
 use crate::mesh::Mesh;
+pub use apart::Assembly;
 use features::Look;
 use glam::DVec3;
 use icp::{Freedom, refined};
@@ -37,9 +40,14 @@ const EXACT: f64 = 0.0015;
 const FOLLOWED: usize = 5;
 /// A share of near points with which nothing more is looked for; whole copies, and pieces.
 const CLEAR: f64 = 0.85;
+/// By how much more a motion may stretch one way than another, and the least share of the original's area that it may leave of a suspect.
+const MOST_STRETCHED: f64 = 4.0;
+const LEAST_AREA: f64 = 0.02;
 /// Hypotheses that are kept, and how much less near than the best they may be.
 const KEPT: usize = 3;
 const NEARLY: f64 = 0.12;
+/// What is less near than this after the last steps on few points is not tried on all: it is not read as it is.
+const HOPELESS: f64 = 0.35;
 /// What is less near than this lies on no original.
 pub const LEAST_NEAR: f64 = 0.6;
 
@@ -51,6 +59,7 @@ pub struct Original<'a> {
     pub surface: Surface<'a>,
     /// The diagonal of its box.
     pub diagonal: f64,
+    area: f64,
     points: Points,
     looks: OnceCell<Vec<Look>>,
 }
@@ -95,6 +104,7 @@ impl<'a> Original<'a> {
             mesh,
             surface: Surface::new(mesh),
             diagonal: diagonal(&mesh.positions),
+            area: mesh.area(),
             points: Points::of(mesh, LAST, 1),
             looks: OnceCell::new(),
         }
@@ -104,7 +114,7 @@ impl<'a> Original<'a> {
     fn looks(&self) -> &[Look] {
         self.looks.get_or_init(|| {
             let cloud = Points::of(self.mesh, CLOUD, 2);
-            features::looks_of_original(&cloud, self.mesh.area())
+            features::looks_of_original(&cloud, self.area)
         })
     }
 
@@ -114,7 +124,8 @@ impl<'a> Original<'a> {
         if points.positions.len() < LAST / 2 {
             return Vec::new();
         }
-        let mut found = Found::new(self, &points);
+        let area = suspect.area();
+        let mut found = Found::new(self, &points, area);
         if search == Search::Quick {
             let mut whole = vec![Motion::IDENTITY];
             whole.extend(moments::by_axes(&points, &self.points));
@@ -125,7 +136,6 @@ impl<'a> Original<'a> {
             }
             return found.conclude();
         }
-        let area = suspect.area();
         let mut cloud = Points::of(suspect, CLOUD / 2, 4);
         if search == Search::Mirrored {
             cloud = cloud.mirrored();
@@ -152,10 +162,7 @@ impl<'a> Original<'a> {
         let moved = motion.of_mesh(suspect);
         let surface = Surface::new(&moved);
         let few = self.points.fewer(10 * SCORED / 4);
-        let is_near = |p: &&DVec3| {
-            let nearest = surface.nearest(**p);
-            nearest.is_some_and(|nearest| nearest.distance < FINE * self.diagonal)
-        };
+        let is_near = |p: &&DVec3| surface.nearest_within(**p, FINE * self.diagonal).is_some();
         few.positions.iter().filter(is_near).count() as f64 / few.positions.len().max(1) as f64
     }
 
@@ -175,10 +182,8 @@ impl<'a> Original<'a> {
         }
         let is_near = |(p, n): (&DVec3, &DVec3)| {
             let at = motion.of(*p);
-            self.surface.foot(at).is_some_and(|(foot, plane)| {
-                foot.distance(at) < distance * self.diagonal
-                    && (turned * *n).normalize_or_zero().dot(plane) > 0.5
-            })
+            let foot = self.surface.foot(at, distance * self.diagonal);
+            foot.is_some_and(|(_, plane)| (turned * *n).normalize_or_zero().dot(plane) > 0.5)
         };
         let pairs = points.positions.iter().zip(&points.normals);
         pairs.filter(|pair| is_near(*pair)).count() as f64 / points.positions.len().max(1) as f64
@@ -188,6 +193,8 @@ impl<'a> Original<'a> {
 /// What was found of a suspect so far.
 struct Found<'a> {
     original: &'a Original<'a>,
+    /// Of the suspect.
+    area: f64,
     all: &'a Points,
     scored: Points,
     refined: Points,
@@ -195,9 +202,10 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn new(original: &'a Original, all: &'a Points) -> Found<'a> {
+    fn new(original: &'a Original, all: &'a Points, area: f64) -> Found<'a> {
         Found {
             original,
+            area,
             all,
             scored: all.fewer(SCORED),
             refined: all.fewer(REFINED),
@@ -242,8 +250,22 @@ impl<'a> Found<'a> {
                 [0.1 * d, 0.01 * d],
                 0.003 * d,
             );
-            self.kept.push(self.original.scored(&self.scored, motion));
+            if self.is_possible(&motion) {
+                self.kept.push(self.original.scored(&self.scored, motion));
+            }
         }
+    }
+
+    /// Whether a motion leaves of the suspect what can be told from a point or a sheet: these lie on anything.
+    fn is_possible(&self, motion: &Motion) -> bool {
+        let Some((stretch, _)) = motion.stretch_and_turn() else {
+            return false;
+        };
+        let areas = motion.linear.inverse().transpose() * motion.linear.determinant();
+        let normals = self.scored.normals.iter();
+        let mean = normals.clone().map(|n| (areas * *n).length()).sum::<f64>();
+        let area = self.area * mean / normals.len().max(1) as f64;
+        stretch[0] <= MOST_STRETCHED * stretch[2] && area >= LEAST_AREA * self.original.area
     }
 
     /// Whether two motions take the suspect to different places.
@@ -267,18 +289,24 @@ impl<'a> Found<'a> {
                 kept.push(candidate);
             }
         }
-        let d = self.original.diagonal;
-        let finish = |registration: Registration| {
-            let surface = &self.original.surface;
-            let mut motion = registration.motion;
-            for (freedom, rounds) in [(Freedom::Similarity, 4), (Freedom::Affine, 8)] {
-                let reach = [0.012 * d, 0.006 * d];
-                motion = refined(self.all, surface, motion, freedom, rounds, reach, 0.001 * d);
-            }
-            self.original.scored(self.all, motion)
+        let finish = |kept: Registration| match self.finished(&kept, &self.refined) {
+            hopeless if hopeless.near < HOPELESS => hopeless,
+            _ => self.finished(&kept, self.all),
         };
         let mut finished: Vec<Registration> = kept.into_iter().map(finish).collect();
+        finished.retain(|finished| self.is_possible(&finished.motion));
         finished.sort_by(|a, b| b.score().total_cmp(&a.score()));
         finished
+    }
+
+    /// The last steps, on so many points.
+    fn finished(&self, kept: &Registration, points: &Points) -> Registration {
+        let (d, surface) = (self.original.diagonal, &self.original.surface);
+        let mut motion = kept.motion;
+        for (freedom, rounds) in [(Freedom::Similarity, 4), (Freedom::Affine, 8)] {
+            let reach = [0.012 * d, 0.006 * d];
+            motion = refined(points, surface, motion, freedom, rounds, reach, 0.001 * d);
+        }
+        self.original.scored(points, motion)
     }
 }

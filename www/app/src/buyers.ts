@@ -1,5 +1,4 @@
 /** One copy for each buyer: names in, an archive of copies and their ledger out. */
-import { csvFormat } from "d3-dsv";
 import { filesOf, isAlone, type Preset } from "./copy";
 import { engine } from "./engine";
 import type { KeyMaker } from "./key-form";
@@ -57,7 +56,7 @@ export async function copiesFor(model: Model, names: string[], first: number, st
       task.say(`Copy ${entries.length} of ${names.length}: ${name}`, entries.length / names.length);
     }
   });
-  const { strToU8, zipSync } = await import("fflate");
+  const [{ csvFormat }, { strToU8, zipSync }] = await Promise.all([import("d3-dsv"), import("fflate")]);
   files["ledger.csv"] = strToU8(`${csvFormat(entries)}\n`);
   files["ledger.json"] = strToU8(`${JSON.stringify(entries, null, 2)}\n`);
   return { zip: zipSync(files, { level: 0 }), numCopies: entries.length, numWeaker };

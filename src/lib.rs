@@ -67,13 +67,13 @@ pub use watermark::detect_with_local;
 pub use watermark::{
     Advice, Buyer, Capacity, CarrierReading, Comparison, Details, EmbedOptions, EmbedReport,
     Embedding, Error, Extraction, Finding, Forecast, FoundIn, Holds, Illustration, Input,
-    Inspection, Level, Model, NoteEmbedding, NoteReading, NoteReport, NoteSize, Overlay, Plan,
-    PlanError, RecordError, RecordOptions, Shape, Sheet, StampReport, Stamped, StatedFile,
+    Inspection, Ledger, Level, Model, NoteEmbedding, NoteReading, NoteReport, NoteSize, Overlay,
+    Plan, PlanError, RecordError, RecordOptions, Shape, Sheet, StampReport, Stamped, StatedFile,
     Statement, Strength, Surface, Suspect, Traced, Tracing, Unshown, Verdict, Witness, capacity,
     compare, compare_overlaid, compare_overlaid_with_record, compare_with_record, decompress,
     detect, embed, embed_note, extract, extract_many, file_names, inspect, measure, note_capacity,
-    prepare, read_note, record, trace, trace_evidence, verify, verify_with_original,
-    verify_with_record,
+    prepare, read_note, record, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
+    verify, verify_with_original, verify_with_record,
 };
 
 /// A generated model to try things on: a .glb of 12 000 vertices with normals and one material.

@@ -90,6 +90,7 @@ impl Copies {
             file: copy.file.clone(),
             sha256: copy.report.marked_sha256.clone(),
             date: self.date.clone(),
+            triangles: Some(copy.report.triangles as u64),
         };
         let entries: Vec<Entry> = copies.iter().map(entry).collect();
         let [csv, json] = &ledgers;

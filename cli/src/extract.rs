@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::informed::Informed;
+use crate::informed::InformedArguments;
 use crate::owner::Owner;
 use crate::report::Report;
 use crate::statement::StatementArgument;
@@ -16,7 +16,7 @@ pub struct Extract {
     #[command(flatten)]
     suspect: Suspect,
     #[command(flatten)]
-    informed: Informed,
+    informed: InformedArguments,
     #[command(flatten)]
     local: LocalArgument,
     #[command(flatten)]
@@ -41,12 +41,12 @@ impl Extract {
             let picture = compared.overlay.as_ref();
             let picture = picture.filter(|_| self.statement.is_wanted());
             let picture = picture.map(Illustration::of);
-            let finding = Finding::Comparison(&compared.comparison, picture.as_ref());
+            let finding = Finding::Comparison(&compared.answer, picture.as_ref());
             let looked_at = [suspect, (compared.role, compared.path)];
             let repeated = format!("{repeated} {}", compared.argument);
             self.statement
                 .write(finding, &looked_at, &key, &self.owner, &repeated)?;
-            return self.telling.of_comparison(compared.comparison, clock);
+            return self.telling.of_comparison(compared.answer, clock);
         }
         let extraction = self.suspect.examine(&key, None, self.local, &mut clock)?;
         let finding = Finding::Reading(&extraction);

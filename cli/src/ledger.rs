@@ -24,12 +24,16 @@ pub struct Entry {
     /// When it was made, as the caller put it.
     #[serde(default)]
     pub date: String,
+    /// How many triangles the model has that it is a copy of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<u64>,
 }
 
 /// A buyer of a list.
 pub struct Buyer {
     pub number: u64,
     pub name: String,
+    pub triangles: Option<u64>,
 }
 
 /// The buyers of a ledger: `.json` is a list of objects, everything else CSV with a line of headings, `number` or `name` among them.
@@ -85,6 +89,7 @@ pub fn read(path: &Path, first: u64) -> Result<Vec<Buyer>, Failure> {
         buyers.push(Buyer {
             number,
             name: entry.name,
+            triangles: entry.triangles,
         });
     }
     if buyers.is_empty() {

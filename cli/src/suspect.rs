@@ -91,7 +91,7 @@ impl Suspect {
 #[derive(Args, Clone, Copy)]
 pub struct LocalArgument {
     /// Look for what LOCAL marked too, which a piece still holds that was cut out, and then simplified or remeshed. It takes seconds
-    #[arg(long, conflicts_with = "evidence")]
+    #[arg(long, conflicts_with_all = ["evidence", "original", "record"])]
     local: bool,
 }
 

@@ -2,15 +2,16 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::ledger;
+use crate::informed::InformedArguments;
+use crate::ledger::{self, Buyer};
 use crate::owner::Owner;
 use crate::report::Report;
 use crate::statement::StatementArgument;
 use crate::suspect::Suspect;
 use clap::Args;
-use meshmark::{Finding, Traced, Verdict};
+use meshmark::{Finding, Illustration, Ledger, Traced, Tracing, Verdict};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// Say whose copies a model was made of, if several mixed theirs too
@@ -21,6 +22,8 @@ pub struct Trace {
     /// The ledger: CSV with a column number, as `copies` writes it, or JSON. Every buyer in it is charged
     #[arg(long, value_name = "FILE")]
     ledger: PathBuf,
+    #[command(flatten)]
+    informed: InformedArguments,
     #[command(flatten)]
     owner: Owner,
     #[command(flatten)]
@@ -33,29 +36,29 @@ impl Trace {
         let buyers = ledger::read(&self.ledger, 1)?;
         let key = self.owner.key()?;
         let numbers: Vec<u64> = buyers.iter().map(|buyer| buyer.number).collect();
-        let tracing = self.suspect.trace(&key, &numbers, &mut clock)?;
-        let names: BTreeMap<u64, String> = buyers
-            .into_iter()
-            .map(|buyer| (buyer.number, buyer.name))
-            .collect();
-        let named: Vec<(u64, String)> = tracing
-            .buyers
-            .iter()
-            .map(|buyer| {
-                (
-                    buyer.number,
-                    names.get(&buyer.number).cloned().unwrap_or_default(),
-                )
-            })
-            .collect();
-        let repeated = format!(
+        let mut looked_at = vec![("Suspect", self.suspect.path()), ("Ledger", &*self.ledger)];
+        let mut repeated = format!(
             "meshmark trace {} --ledger {}",
             self.suspect.arguments(),
             self.ledger.display()
         );
+        let informed = self
+            .informed
+            .trace(&self.suspect, &key, &numbers, &mut clock)?;
+        let (tracing, picture) = match informed {
+            Some(informed) => {
+                looked_at.push((informed.role, informed.path));
+                repeated = format!("{repeated} {}", informed.argument);
+                let overlay = informed.overlay.as_ref();
+                let overlay = overlay.filter(|_| self.statement.is_wanted());
+                (informed.answer, overlay.map(Illustration::of))
+            }
+            None => (self.suspect.trace(&key, &numbers, &mut clock)?, None),
+        };
+        let says = said_of(&buyers, &tracing);
         self.statement.write(
-            Finding::Tracing(&tracing, &named),
-            &[("Suspect", self.suspect.path()), ("Ledger", &self.ledger)],
+            Finding::Tracing(&tracing, &says, picture.as_ref()),
+            &looked_at,
             &key,
             &self.owner,
             &repeated,
@@ -67,10 +70,29 @@ impl Trace {
         };
         let mut told = serde_json::to_value(&tracing)?;
         if let Some(Value::Array(told)) = told.get_mut("buyers") {
-            for (buyer, (_, name)) in told.iter_mut().zip(named) {
+            for (buyer, (_, name)) in told.iter_mut().zip(says.names) {
                 buyer["name"] = json!(name);
             }
         }
         Report::judged(&told, verdict, clock)
+    }
+}
+
+/// What the ledger says of who is named. Of triangles it says something where all copies are of one model.
+fn said_of(buyers: &[Buyer], tracing: &Tracing) -> Ledger {
+    let known: BTreeMap<u64, &str> = buyers
+        .iter()
+        .map(|buyer| (buyer.number, &*buyer.name))
+        .collect();
+    let name = |number| known.get(&number).copied().unwrap_or_default().to_owned();
+    let named = tracing.buyers.iter();
+    let names = named.map(|buyer| (buyer.number, name(buyer.number)));
+    let triangles: BTreeSet<Option<u64>> = buyers.iter().map(|buyer| buyer.triangles).collect();
+    Ledger {
+        names: names.collect(),
+        triangles: match triangles.len() {
+            1 => triangles.first().copied().flatten(),
+            _ => None,
+        },
     }
 }

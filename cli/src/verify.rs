@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::informed::Informed;
+use crate::informed::InformedArguments;
 use crate::owner::Owner;
 use crate::payload::PayloadArgument;
 use crate::report::Report;
@@ -15,7 +15,7 @@ pub struct Verify {
     #[command(flatten)]
     suspect: Suspect,
     #[command(flatten)]
-    informed: Informed,
+    informed: InformedArguments,
     #[command(flatten)]
     local: LocalArgument,
     #[command(flatten)]

@@ -867,7 +867,8 @@ fn a_copy_for_each_buyer_is_traced_and_stated() {
     assert_eq!(made["numWeaker"], 0);
     let sha256 = made["copies"][1]["markedSha256"].as_str().unwrap();
     let ledger = fs::read_to_string(folder.path("sold/ledger.csv")).unwrap();
-    let line = format!("2,<script>alert(1)</script>,model.2.glb,{sha256},2026-11-29");
+    let triangles = made["copies"][1]["triangles"].as_u64().unwrap();
+    let line = format!("2,<script>alert(1)</script>,model.2.glb,{sha256},2026-11-29,{triangles}");
     assert!(ledger.lines().any(|other| other == line), "{ledger}");
     assert!(ledger.contains("\"Grace, the first\""), "{ledger}");
     // A ledger is not written over.
@@ -927,6 +928,37 @@ fn a_copy_for_each_buyer_is_traced_and_stated() {
         assert!(!report.contains(active), "{active}");
     }
     assert!(!report.contains("correct horse"));
+    let ledger = fs::read(folder.path("sold/ledger.json")).unwrap();
+    assert!(
+        report.contains(&meshmark::internals::digest::sha256(&ledger)),
+        "the digest of the ledger"
+    );
+    assert!(report.contains("50 % of the"), "by the ledger's triangles");
+    assert!(report.contains("more is not known without the original"));
+    // A list without triangles says less.
+    let trace = format!("trace leaked.glb --ledger buyers.csv --report report.html {ADA}");
+    assert_eq!(folder.run(&trace).0, 0);
+    let report = fs::read_to_string(folder.path("report.html")).unwrap();
+    assert!(report.contains("<bdi>Not known: "));
+
+    // With the original the report has its picture, and says what was done.
+    let trace = format!(
+        "trace leaked.glb --ledger sold/ledger.csv --original model.glb --report report.html {ADA}"
+    );
+    let (code, traced, _) = folder.run(&trace);
+    assert_eq!(code, 0, "{traced}");
+    assert_eq!(traced["buyers"][0]["number"], 2);
+    assert_eq!(traced["comparison"]["shape"], "same");
+    let report = fs::read_to_string(folder.path("report.html")).unwrap();
+    for words in [
+        "--ledger sold/ledger.csv --original model.glb --owner",
+        "<bdi>Original</bdi>",
+        "data:image/png;base64,",
+        "other triangles: 50 %",
+        "Show that it is older.",
+    ] {
+        assert!(report.contains(words), "{words}");
+    }
 
     // Of another key's marks nothing is said.
     let other = "trace leaked.glb --ledger sold/ledger.csv --owner Ada --passphrase-file other.txt";

@@ -198,7 +198,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     }
     if arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;
-        return trace::table(models, &Seed::new(seed));
+        return trace::table(&models, &Seed::new(seed));
     }
     if let Some(num_keys) = arguments.local {
         let (models, _) = models::all(arguments.models.as_deref())?;

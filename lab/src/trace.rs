@@ -1,16 +1,20 @@
 //! Copies that leak: who is named after an attack, and after several buyers mixed theirs.
 
-use crate::models::{Class, Model, Size};
+use crate::models::Model;
 use crate::seed::Seed;
 use glam::DVec3;
-use meshmark::internals::attack::{Step, chain, step};
+use meshmark::internals::attack::{Step, chain, similarity, step};
 use meshmark::internals::document::Document;
 use meshmark::internals::geometry::{Distortion, diagonal};
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::Scene;
-use meshmark::{EmbedOptions, Error, Files, Key, Plan, Strength, Surface, prepare, trace};
+use meshmark::{
+    EmbedOptions, Error, Files, Plan, RecordOptions, Strength, Surface, Tracing, prepare, record,
+    trace, trace_overlaid, trace_overlaid_with_record,
+};
 use rayon::prelude::*;
 use std::fmt::Write;
+use std::sync::Mutex;
 
 /// Buyers in a ledger.
 const LEDGERS: [u64; 3] = [10, 1000, 100_000];
@@ -39,12 +43,45 @@ enum Mix {
     Extremes,
 }
 
-/// Who leaks what.
+/// What is at hand beside the key and the ledger.
+#[derive(Clone, Copy)]
+enum With {
+    Nothing,
+    Original,
+    Record,
+}
+
+impl With {
+    const ALL: [With; 3] = [With::Nothing, With::Original, With::Record];
+}
+
+/// Who leaks what, and what it is read with.
 struct Row {
     num: usize,
     mix: Mix,
     steps: Vec<Step>,
+    with: With,
+    /// Whether the suspect is turned, scaled and moved at random too.
+    is_moved: bool,
 }
+
+/// What is read with the original and the record too.
+const HARD: [(usize, Mix, &[&str]); 6] = [
+    (
+        1,
+        Mix::One,
+        &["crop 30 %", "simplify 50 %", "glTF quantize 10 bits"],
+    ),
+    (1, Mix::One, &["simplify 90 %"]),
+    (2, Mix::Average, &["crop 50 %", "simplify 50 %"]),
+    (
+        2,
+        Mix::Average,
+        &["crop 30 %", "simplify 50 %", "glTF quantize 10 bits"],
+    ),
+    (3, Mix::Average, &["simplify 50 %"]),
+    (5, Mix::Average, &[]),
+];
 
 fn rows() -> Result<Vec<Row>, String> {
     const ALONE: [&str; 9] = [
@@ -59,12 +96,16 @@ fn rows() -> Result<Vec<Row>, String> {
         "triangle soup",
     ];
     let mut rows = Vec::new();
+    let known = |name: &&str| step(name).ok_or(format!("no attack {name}"));
     let mut add = |num, mix, name: &str| -> Result<(), String> {
-        let steps = match name {
-            "" => Vec::new(),
-            name => vec![step(name).ok_or(format!("no attack {name}"))?],
-        };
-        rows.push(Row { num, mix, steps });
+        let names = Some(name).filter(|name| !name.is_empty());
+        rows.push(Row {
+            num,
+            mix,
+            steps: names.iter().map(known).collect::<Result<_, _>>()?,
+            with: With::Nothing,
+            is_moved: false,
+        });
         Ok(())
     };
     for name in ALONE {
@@ -75,6 +116,17 @@ fn rows() -> Result<Vec<Row>, String> {
             add(num, mix, "")?;
         }
         add(num, Mix::Average, "simplify 50 %")?;
+    }
+    for (num, mix, names) in HARD {
+        for with in With::ALL {
+            rows.push(Row {
+                num,
+                mix,
+                steps: names.iter().map(known).collect::<Result<_, _>>()?,
+                with,
+                is_moved: true,
+            });
+        }
     }
     Ok(rows)
 }
@@ -95,7 +147,13 @@ impl Row {
             Mix::Extremes => " take minima and maxima",
         };
         let steps: Vec<String> = self.steps.iter().map(|step| format!(", {step}")).collect();
-        format!("{who}{mix}{}", steps.concat())
+        let moved = if self.is_moved { ", moved" } else { "" };
+        let with = match self.with {
+            With::Nothing => "",
+            With::Original => "; with the original",
+            With::Record => "; with the record",
+        };
+        format!("{who}{mix}{}{moved}{with}", steps.concat())
     }
 
     fn mixed(&self, copies: &[Mesh]) -> Mesh {
@@ -150,67 +208,93 @@ impl Caught {
     }
 }
 
-/// A table with a line for each row, of the usual plain models that hold numbers. A reading of the others scans for axes or looks at many
-/// pieces, which takes seconds, and there are some thousand readings. What is known so far is told on the way.
-pub fn table(mut models: Vec<Model>, seed: &Seed) -> Result<String, String> {
-    models.retain(|model| model.size <= Size::Usual && model.class == Class::Plain);
+/// Tables with a line for each row, of the models that hold numbers. It takes hours, so what is known so far is told on the way.
+pub fn table(models: &[Model], seed: &Seed) -> Result<String, String> {
     let rows = rows()?;
     let ledgers = LEDGERS.map(|buyers| (1..=buyers).collect::<Vec<u64>>());
     let mut text = format!(
         "Seed {}. Caught: at least one of who leaked / all of them.\n",
         seed.number
     );
-    let mut num_trials = 0;
-    let mut num_named = 0;
+    let mut told = Told::default();
     for (name, strength) in STRENGTHS {
-        let found: Vec<(String, Option<Vec<Caught>>)> = models
-            .par_iter()
-            .map(|model| {
-                let purpose = format!("trace, {name}, {}", model.name);
-                let caught = of_model(model, strength, &rows, &ledgers, seed, &purpose);
-                eprintln!("{name}: {} is done", model.name);
-                (model.name.clone(), caught)
-            })
-            .collect();
-        let without = found.iter().filter(|(_, caught)| caught.is_none());
-        let without: Vec<&str> = without.map(|(name, _)| &**name).collect();
-        let caught: Vec<&Vec<Caught>> = found
+        let found = Mutex::new(Vec::new());
+        models.par_iter().for_each(|model| {
+            let purpose = format!("trace, {name}, {}", model.name);
+            let caught = of_model(model, strength, &rows, &ledgers, seed, &purpose);
+            let mut found = found
+                .lock()
+                .unwrap_or_else(|poisoned| poisoned.into_inner());
+            found.push((model.name.clone(), caught));
+            eprintln!(
+                "{}",
+                strength_table(name, &rows, &found, &mut Told::default())
+            );
+        });
+        let found = found
+            .into_inner()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
+        text += &strength_table(name, &rows, &found, &mut told);
+    }
+    let Told { named, trials } = told;
+    let _ = write!(text, "\nInnocents: {named} named in {trials} trials.");
+    Ok(text)
+}
+
+/// Buyers without a part in a suspect: how many were named, and how many asked for.
+#[derive(Default)]
+struct Told {
+    named: usize,
+    trials: usize,
+}
+
+/// The table of a strength; models that hold no number are named above it.
+fn strength_table(
+    name: &str,
+    rows: &[Row],
+    found: &[(String, Option<Vec<Caught>>)],
+    told: &mut Told,
+) -> String {
+    let names = |holds: bool| {
+        let mut names: Vec<&str> = found
             .iter()
-            .filter_map(|(_, caught)| caught.as_ref())
+            .filter(|(_, caught)| caught.is_some() == holds)
+            .map(|(name, _)| &**name)
             .collect();
+        names.sort_unstable();
+        match names.as_slice() {
+            [] => "none".to_owned(),
+            names => names.join(", "),
+        }
+    };
+    let caught: Vec<&Vec<Caught>> = found
+        .iter()
+        .filter_map(|(_, caught)| caught.as_ref())
+        .collect();
+    let mut text = format!(
+        "\n{name}: {} models: {}. Too small for a number: {}.\n\n\
+         | | 10 buyers | 1 000 | 100 000 | innocents named | distance from the host, of one copy's |\n|---|--:|--:|--:|--:|--:|\n",
+        caught.len(),
+        names(true),
+        names(false),
+    );
+    for (number, row) in rows.iter().enumerate() {
+        let all = caught.iter().map(|rows| rows[number]);
+        let sum = all.fold(Caught::default(), Caught::and);
+        let cells = (0..LEDGERS.len()).map(|i| format!("{} / {}", sum.some[i], sum.all[i]));
+        let cells: Vec<String> = cells.collect();
+        told.named += sum.innocents;
+        told.trials += sum.trials;
         let _ = writeln!(
             text,
-            "\n{name}: {} models; too small for a number: {}\n\n| | 10 buyers | 1 000 | 100 000 | innocents named | distance from the host, of one copy's |\n|---|--:|--:|--:|--:|--:|",
-            caught.len(),
-            if without.is_empty() {
-                "none".to_owned()
-            } else {
-                without.join(", ")
-            },
+            "| {} | {} | {} | {:.2} |",
+            row.name(),
+            cells.join(" | "),
+            sum.innocents,
+            sum.distance / sum.num_models.max(1) as f64
         );
-        for (number, row) in rows.iter().enumerate() {
-            let all = caught.iter().map(|rows| rows[number]);
-            let sum = all.fold(Caught::default(), Caught::and);
-            let cells = (0..LEDGERS.len()).map(|i| format!("{} / {}", sum.some[i], sum.all[i]));
-            let cells: Vec<String> = cells.collect();
-            let innocents = sum.innocents;
-            num_named += innocents;
-            num_trials += sum.trials;
-            let _ = writeln!(
-                text,
-                "| {} | {} | {innocents} | {:.2} |",
-                row.name(),
-                cells.join(" | "),
-                sum.distance / sum.num_models.max(1) as f64
-            );
-        }
-        eprintln!("{text}");
     }
-    let _ = write!(
-        text,
-        "\nInnocents: {num_named} named in {num_trials} trials."
-    );
-    Ok(text)
+    text
 }
 
 /// `None` where the model holds no number.
@@ -224,16 +308,22 @@ fn of_model(
 ) -> Option<Vec<Caught>> {
     let key = seed.key(purpose, 0);
     let options = EmbedOptions::default().with_strength(strength);
-    let (plan, _) = prepare(&model.bytes, &key, &options).ok()?;
+    let (plan, specimen) = prepare(&model.bytes, &key, &options).ok()?;
+    let record = record(&model.bytes, &specimen, &key, &RecordOptions::default()).ok()?;
     let first = seed.number(purpose, 1) % FIRST;
     let numbers: Vec<u64> = (0..5).map(|i| 1 + (first + 2 * i) % FIRST).collect();
     let copies = copies(&plan, &numbers).ok()?;
     let host = mesh(&model.bytes)?;
     let distance = |mesh: &Mesh| Distortion::between(&host.positions, &mesh.positions).rms_rel;
     let one = distance(&copies[0]);
+    let attack_seed = seed.number(purpose, 2);
     let caught = rows.iter().map(|row| {
         let mixed = row.mixed(&copies);
-        let suspect = chain(&mixed, &row.steps, seed.number(purpose, 2));
+        let attacked = chain(&mixed, &row.steps, attack_seed);
+        let suspect = match row.is_moved {
+            true => similarity(&attacked, attack_seed),
+            false => attacked,
+        };
         let mut caught = Caught {
             num_models: 1,
             distance: distance(&mixed) / one,
@@ -248,7 +338,17 @@ fn of_model(
                 caught.all[place] = 1;
                 continue;
             }
-            let named = named(&suspect, &key, ledger);
+            let positions: Vec<[f64; 3]> = suspect.positions.iter().map(|p| p.to_array()).collect();
+            let surface = Surface::new(&positions, &suspect.triangles);
+            let tracing = match row.with {
+                With::Nothing => trace(surface, &key, ledger),
+                With::Original => {
+                    trace_overlaid(surface, &model.bytes, &key, ledger).map(|traced| traced.0)
+                }
+                With::Record => trace_overlaid_with_record(surface, &record, &key, ledger)
+                    .map(|traced| traced.0),
+            };
+            let named = named(tracing);
             caught.trials += ledger.len() - row.num;
             let num_caught = named
                 .iter()
@@ -276,10 +376,7 @@ fn mesh(model: &[u8]) -> Option<Mesh> {
 }
 
 /// Nobody where the suspect cannot be read.
-fn named(suspect: &Mesh, key: &Key, ledger: &[u64]) -> Vec<u64> {
-    let positions: Vec<[f64; 3]> = suspect.positions.iter().map(|p| p.to_array()).collect();
-    let surface = Surface::new(&positions, &suspect.triangles);
-    let tracing = trace(surface, key, ledger);
+fn named(tracing: Result<Tracing, Error>) -> Vec<u64> {
     let buyers = tracing.map(|tracing| tracing.buyers).unwrap_or_default();
     buyers.into_iter().map(|buyer| buyer.number).collect()
 }

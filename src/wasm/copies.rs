@@ -1,11 +1,15 @@
 //! Copies for buyers, and tracing: for who sells.
 
+use super::informed::laid;
 use super::marks::{embed_options_from, evidence_from, key_from, model_to, surface_from};
 use super::options::Options;
 use super::statement::stated;
-use super::{encoded, set, thrown};
+use super::{argument, encoded, set, thrown};
 use crate::watermark::{self, Error};
-use crate::{Extraction, Finding, Key, Model, Payload, Plan, Surface, Tracing};
+use crate::{
+    Extraction, Finding, Illustration, Key, Ledger, Model, Overlay, Payload, Plan, Surface,
+    Suspect, Tracing,
+};
 use js_sys::{Object, Reflect, Uint8Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
@@ -60,14 +64,12 @@ pub fn trace(
     numbers: &[f64],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let options = Options::new(options, &["files", "statement", "onProgress"])?;
-    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let options = Options::new(options, &[&["files"], &TRACE_OPTIONS[..]].concat())?;
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let model = Model::new(model)
         .with_files(&files)
         .with_progress(&mut listener);
-    let tracing = watermark::trace(model, &key, &numbers).map_err(thrown)?;
-    told(&tracing, &key, &options)
+    traced(model.into(), key, numbers, &options)
 }
 
 /// The same of a suspect that is no glTF.
@@ -79,13 +81,57 @@ pub fn trace_mesh(
     numbers: &[f64],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let options = Options::new(options, &["statement", "onProgress"])?;
-    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let options = Options::new(options, &TRACE_OPTIONS)?;
     let mut listener = options.listener()?;
     let (positions, triangles) = surface_from(positions, triangles)?;
     let surface = Surface::new(positions, triangles).with_progress(&mut listener);
-    let tracing = watermark::trace(surface, &key, &numbers).map_err(thrown)?;
-    told(&tracing, &key, &options)
+    traced(surface.into(), key, numbers, &options)
+}
+
+/// Options of every suspect that is traced, but of evidence.
+const TRACE_OPTIONS: [&str; 6] = [
+    "original",
+    "originalFiles",
+    "record",
+    "overlay",
+    "statement",
+    "onProgress",
+];
+
+/// A tracing with what there is beside the suspect.
+fn traced(
+    suspect: Suspect,
+    key: &[u8],
+    numbers: &[f64],
+    options: &Options,
+) -> Result<JsValue, JsValue> {
+    let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
+    let (original, record) = (options.get("original"), options.get("record"));
+    let is_overlay = options.is_set("overlay")?;
+    let (tracing, overlay) = match (original.is_undefined(), record.is_undefined()) {
+        (true, true) => watermark::trace(suspect, &key, &numbers).map(|tracing| (tracing, None)),
+        (false, true) => {
+            let original = original.dyn_ref::<Uint8Array>();
+            let original = original.ok_or_else(|| argument("original is a byte array"))?;
+            let (bytes, files) = (original.to_vec(), options.files("originalFiles")?);
+            let original = Model::new(&bytes).with_files(&files);
+            watermark::trace_overlaid(suspect, original, &key, &numbers)
+        }
+        (true, false) => {
+            let record = record.as_string();
+            let record = record.ok_or_else(|| argument("record is a text"))?;
+            watermark::trace_overlaid_with_record(suspect, &record, &key, &numbers)
+        }
+        (false, false) => return Err(argument("there is an original or a record, not both")),
+    }
+    .map_err(thrown)?;
+    let result = told(&tracing, overlay.as_ref(), &key, options)?;
+    if is_overlay {
+        let overlay = overlay.as_ref().map(laid).transpose()?;
+        let overlay = overlay.map_or(JsValue::NULL, Into::into);
+        set(result.unchecked_ref::<Object>(), "overlay", &overlay)?;
+    }
+    Ok(result)
 }
 
 /// The same of evidence.
@@ -99,7 +145,7 @@ pub fn trace_evidence(
     let options = Options::new(options, &["statement"])?;
     let (key, numbers) = (key_from(key)?, numbers_from(numbers)?);
     let tracing = watermark::trace_evidence(&evidence_from(evidence)?, &key, &numbers);
-    told(&tracing.map_err(thrown)?, &key, &options)
+    told(&tracing.map_err(thrown)?, None, &key, &options)
 }
 
 /// Reads a model with the key alone, and states what was found.
@@ -123,19 +169,31 @@ pub fn copy_number(payload: f64, key: &[u8]) -> Result<f64, JsValue> {
 }
 
 /// A tracing, and its statement where one was asked for.
-fn told(tracing: &Tracing, key: &Key, options: &Options) -> Result<JsValue, JsValue> {
+fn told(
+    tracing: &Tracing,
+    overlay: Option<&Overlay>,
+    key: &Key,
+    options: &Options,
+) -> Result<JsValue, JsValue> {
     let result = encoded(tracing)?;
     let asked = options.get("statement");
     if let Some(object) = asked.dyn_ref::<Object>() {
+        let triangles = Reflect::get(object, &"triangles".into())?;
+        let mut ledger = Ledger {
+            triangles: triangles.as_f64().map(|triangles| triangles as u64),
+            ..Ledger::default()
+        };
         let names = Reflect::get(object, &"names".into())?;
-        let mut named = Vec::new();
         if let Some(names) = names.dyn_ref::<Object>() {
             for buyer in &tracing.buyers {
                 let name = Reflect::get(names, &buyer.number.to_string().into())?;
-                named.push((buyer.number, name.as_string().unwrap_or_default()));
+                let name = name.as_string().unwrap_or_default();
+                ledger.names.push((buyer.number, name));
             }
         }
-        let html = stated(Finding::Tracing(tracing, &named), key, &asked)?;
+        let picture = overlay.map(Illustration::of);
+        let finding = Finding::Tracing(tracing, &ledger, picture.as_ref());
+        let html = stated(finding, key, &asked)?;
         let object = result.unchecked_ref::<Object>();
         set(object, "statement", &html.into())?;
     }

@@ -160,7 +160,7 @@ fn told(
     Ok(result)
 }
 
-fn laid(overlay: &Overlay) -> Result<Object, JsValue> {
+pub(super) fn laid(overlay: &Overlay) -> Result<Object, JsValue> {
     let floats = |values: &[f32]| JsValue::from(Float32Array::from(values));
     let evidence = overlay.evidence.as_deref().map_or(JsValue::NULL, floats);
     let object = Object::new();

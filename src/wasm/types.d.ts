@@ -258,6 +258,8 @@ export interface StampReport {
   /** What `detect` reads of the copy as its `number`: the copy's own number, permuted by the key. */
   payload: number;
   movedVertices: number;
+  /** Triangles of the scene. Where a ledger keeps them, a statement of a tracing can say how many a copy that leaked has left. */
+  triangles: number;
   /** Displacement over all vertices, as fractions of the diagonal. */
   rmsRel: number;
   maxRel: number;
@@ -298,6 +300,8 @@ export interface StatementOptions {
   commands?: string[] | undefined;
   /** Of a tracing: what the ledger calls numbers. Default: they have no names. */
   names?: Record<string, string> | undefined;
+  /** Of a tracing: how many triangles the model had that was sold, by the ledger. Default: not said. */
+  triangles?: number | undefined;
 }
 
 export interface TraceEvidenceOptions {
@@ -305,14 +309,26 @@ export interface TraceEvidenceOptions {
   statement?: StatementOptions | undefined;
 }
 
+/** Of a suspect that is no glTF. */
 export interface TraceMeshOptions extends MeasureMeshOptions {
+  /**
+   * The model that was sold, as it was before it was marked: buyers are named so who are named by the suspect alone no more. It proves something to others
+   * only if it is older than the sale. Default: none.
+   */
+  original?: Uint8Array | undefined;
+  /** What an original that is a `.gltf` names by URI. Default: none. */
+  originalFiles?: Files | undefined;
+  /** The record of an embedding of that model under the same key, in the stead of the original. Default: none. */
+  record?: string | undefined;
+  /** Whether the suspect is laid on the original or the record, to be looked at. Default: false. Its `evidence` follows the key: for the key's owner. */
+  overlay?: boolean | undefined;
   /** Default: no statement. */
   statement?: StatementOptions | undefined;
 }
 
-export interface TraceOptions extends MeasureOptions {
-  /** Default: no statement. */
-  statement?: StatementOptions | undefined;
+export interface TraceOptions extends TraceMeshOptions {
+  /** What a suspect that is a `.gltf` names by URI. Default: none. */
+  files?: Files | undefined;
 }
 
 export interface StateReadingOptions extends MeasureOptions {
@@ -332,10 +348,16 @@ export interface Tracing {
   numBuyers: number;
   numWays: number;
   lnCharge: number;
+  /** Triangles of the suspect; `null` for evidence. */
+  triangles: number | null;
   /** What is read with the key alone. */
   reading: Extraction;
+  /** What is read with the original or the record; `null` without. */
+  comparison: Comparison | null;
   /** One HTML file without scripts, where it was asked for. */
   statement?: string;
+  /** Where it was asked for; `null` where the suspect lies nowhere on the original, or there is none. */
+  overlay?: Overlay | null;
 }
 
 /** Of every comparison. */

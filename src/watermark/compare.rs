@@ -1,8 +1,9 @@
 //! Reading a suspect with the original at hand.
 
 use super::judge::Judge;
+use super::loudest::Loudest;
 use super::overlay::Overlay;
-use super::report::{Comparison, Input, Shape, Verdict, Witness};
+use super::report::{Comparison, Extraction, Input, Shape, Verdict, Witness};
 use super::weigh::{Scales, Spoken};
 use super::{EmbedOptions, Error, Model, Suspect};
 use crate::bits::Payload;
@@ -98,6 +99,16 @@ impl Compared {
             motion.map(|m| Overlay::new(&original, &suspect, m, is_heard.then_some(&spoken)));
         (comparison, overlay)
     }
+
+    /// Where the original is what a record keeps of it.
+    pub(super) fn overlaid_on_record(self) -> (Comparison, Option<Overlay>) {
+        let (comparison, overlay) = self.overlaid();
+        let recorded = overlay.map(|overlay| Overlay {
+            is_recorded: true,
+            ..overlay
+        });
+        (comparison, recorded)
+    }
 }
 
 fn compare_in(
@@ -106,19 +117,65 @@ fn compare_in(
     key: &Key,
     expected: Option<Payload>,
 ) -> Result<Compared, Error> {
+    hear_with_original(&mut suspect, model, key, expected, None)?.compared(suspect, key, expected)
+}
+
+/// What was read with the original, or with its record, and what with.
+pub(super) struct Informed {
+    pub heard: Heard,
+    pub original: Mesh,
+    pub suspect: Mesh,
+}
+
+impl Informed {
+    /// With what is read blind, where that may say more.
+    pub(super) fn compared(
+        self,
+        mut suspect: Suspect,
+        key: &Key,
+        expected: Option<Payload>,
+    ) -> Result<Compared, Error> {
+        let blind = match self.heard.ln_p_payload <= LN_P_FOUND {
+            true => None,
+            false => Some(read_blind(&self.suspect, key, expected, &mut suspect)?),
+        };
+        suspect.step(Stage::Test, 1.0)?;
+        Ok(self.concluded(blind))
+    }
+
+    /// Of a suspect that was taken apart, what is shown is the parts where they lie.
+    pub(super) fn concluded(self, blind: Option<Blind>) -> Compared {
+        let comparison = conclude(&self.heard, blind);
+        let assembled = self.heard.assembled.filter(|_| comparison.num_parts > 1);
+        Compared {
+            comparison,
+            original: self.original,
+            suspect: assembled.unwrap_or(self.suspect),
+            spoken: self.heard.spoken,
+        }
+    }
+}
+
+/// Reads a suspect with the original. `loudest` hears all that is read, where it is asked whose copies the suspect was made of.
+pub(super) fn hear_with_original(
+    suspect: &mut Suspect,
+    model: &Model,
+    key: &Key,
+    expected: Option<Payload>,
+    loudest: Option<&mut Loudest>,
+) -> Result<Informed, Error> {
     suspect.step(Stage::Read, 0.0)?;
     let scene = Scene::gather(&Document::read(model.bytes, model.files)?)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
     let heard = with_host(&scene, &options_of_original(), |host| {
-        hear(host, &mesh, key, expected, &mut suspect)
+        hear(host, &mesh, key, expected, loudest, suspect)
     })??;
-    let blind = match heard.ln_p_payload <= LN_P_FOUND {
-        true => None,
-        false => Some(read_blind(&mesh, key, expected, &mut suspect)?),
-    };
-    suspect.step(Stage::Test, 1.0)?;
-    Ok(heard.compared(scene.mesh, mesh, blind))
+    Ok(Informed {
+        heard,
+        original: scene.mesh,
+        suspect: mesh,
+    })
 }
 
 /// How an original may have been marked: which strength it was does not matter much, for what counts is how vertices move together.
@@ -160,20 +217,6 @@ pub(super) struct Heard {
     pub assembled: Option<Mesh>,
     /// What windows said for the mark.
     pub spoken: Spoken,
-}
-
-impl Heard {
-    /// What is said of it. Of a suspect that was taken apart, what is shown is the parts where they lie.
-    pub(super) fn compared(self, original: Mesh, suspect: Mesh, blind: Option<Blind>) -> Compared {
-        let comparison = conclude(&self, blind);
-        let assembled = self.assembled.filter(|_| comparison.num_parts > 1);
-        Compared {
-            comparison,
-            original,
-            suspect: assembled.unwrap_or(suspect),
-            spoken: self.spoken,
-        }
-    }
 }
 
 /// How a suspect lies on the original.
@@ -224,6 +267,7 @@ fn hear(
     suspect: &Mesh,
     key: &Key,
     expected: Option<Payload>,
+    mut loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(host.mesh);
@@ -243,10 +287,15 @@ fn hear(
             reader.read(&seen, progress, &mut |mut way| {
                 way.list += 2 * known;
                 way.ln_num_tests += ln_num_searches;
-                is_settled = scales.hear(&way);
+                let is_enough = scales.hear(&way);
+                match &mut loudest {
+                    Some(loudest) => loudest.hear(way),
+                    None => is_settled = is_enough,
+                }
                 is_settled
             })?;
         }
+        is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
         Ok::<bool, Error>(is_settled)
     };
     let mut starts = Vec::new();
@@ -344,18 +393,23 @@ pub(super) fn read_blind(
         let is_settled = |reading: &Reading| judge.is_settled(reading);
         readings[carrier as usize] = carrier.read_until(mesh, key, &is_settled, progress)?;
     }
-    let read = judge.conclude(&readings);
-    Ok(Blind {
-        verdict: read.verdict,
-        number: read.number,
-        ln_p: read.details().ln_p,
-    })
+    Ok(Blind::of(&judge.conclude(&readings)))
 }
 
 pub(super) struct Blind {
     verdict: Verdict,
     number: Option<u64>,
     ln_p: f64,
+}
+
+impl Blind {
+    pub(super) fn of(read: &Extraction) -> Blind {
+        Blind {
+            verdict: read.verdict,
+            number: read.number,
+            ln_p: read.details().ln_p,
+        }
+    }
 }
 
 /// One answer. What is said of the shape follows no key, unless the mark is found.

@@ -84,6 +84,8 @@ pub struct StampReport {
     pub payload: u64,
     /// How many vertices moved.
     pub moved_vertices: usize,
+    /// Triangles of the scene. Where a ledger keeps them, a tracing can say how many a copy that leaked has left.
+    pub triangles: usize,
     /// RMS displacement over all vertices, as a fraction of the diagonal.
     pub rms_rel: f64,
     /// Maximum displacement, as a fraction of that diagonal.
@@ -179,12 +181,13 @@ impl Plan {
             }
             copy.ln_p = found.details().ln_p;
         }
-        let host = &self.shown.scene.mesh.positions;
-        let distortion = Distortion::between(host, &copy.positions);
+        let host = &self.shown.scene.mesh;
+        let distortion = Distortion::between(&host.positions, &copy.positions);
         let report = StampReport {
             number,
             payload: payload.number(),
             moved_vertices: distortion.num_moved,
+            triangles: host.triangles.len(),
             rms_rel: distortion.rms_rel,
             max_rel: distortion.max_rel,
             new_intersections: copy.num_cuts,

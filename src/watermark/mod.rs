@@ -9,9 +9,11 @@ mod embed;
 mod error;
 mod extract;
 mod forecast;
+mod hearing;
 mod illustration;
 mod inspect;
 mod judge;
+mod loudest;
 mod marking;
 mod model;
 mod note;
@@ -23,6 +25,7 @@ mod record;
 mod report;
 mod statement;
 mod suspect;
+mod testimony;
 mod trace;
 mod unshown;
 mod weigh;
@@ -52,6 +55,8 @@ pub use report::{
     CarrierReading, Comparison, Details, EmbedReport, Extraction, Forecast, FoundIn, Input, Level,
     Shape, Unshown, Verdict, Witness,
 };
-pub use statement::{Finding, StatedFile, Statement};
+pub use statement::{Finding, Ledger, StatedFile, Statement};
 pub use suspect::{Surface, Suspect};
-pub use trace::{Buyer, Traced, Tracing, trace, trace_evidence};
+pub use trace::{
+    Buyer, Traced, Tracing, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
+};

@@ -3,9 +3,10 @@
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
 use super::compare::{
-    Compared, Heard, Lay, is_to_be_taken_apart, ln_num_searches, options_of_original, read_blind,
+    Compared, Heard, Informed, Lay, is_to_be_taken_apart, ln_num_searches, options_of_original,
     with_host,
 };
+use super::loudest::Loudest;
 use super::overlay::Overlay;
 use super::report::{Comparison, EmbedReport, Witness};
 use super::weigh::Scales;
@@ -13,7 +14,6 @@ use super::{Error, Model, RecordError, Suspect};
 use crate::attack::simplify_to;
 use crate::bits::Payload;
 use crate::carrier::{Frames, Recorded, StoredError, take};
-use crate::detection::LN_P_FOUND;
 use crate::document::Document;
 use crate::geometry::{Motion, Original, Search};
 use crate::key::Key;
@@ -195,12 +195,7 @@ pub fn compare_overlaid_with_record<'a>(
     record: &str,
     key: &Key,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    let (comparison, overlay) = compare_in(suspect.into(), record, key, None)?.overlaid();
-    let recorded = overlay.map(|overlay| Overlay {
-        is_recorded: true,
-        ..overlay
-    });
-    Ok((comparison, recorded))
+    Ok(compare_in(suspect.into(), record, key, None)?.overlaid_on_record())
 }
 
 fn compare_in(
@@ -209,18 +204,27 @@ fn compare_in(
     key: &Key,
     expected: Option<Payload>,
 ) -> Result<Compared, Error> {
+    hear_with_record(&mut suspect, record, key, expected, None)?.compared(suspect, key, expected)
+}
+
+/// Reads a suspect with a record. `loudest` hears all that is read, where it is asked whose copies the suspect was made of.
+pub(super) fn hear_with_record(
+    suspect: &mut Suspect,
+    record: &str,
+    key: &Key,
+    expected: Option<Payload>,
+    loudest: Option<&mut Loudest>,
+) -> Result<Informed, Error> {
     let (shape, recorded) = opened(record, key)?;
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
     let original = shape.mesh();
-    let heard = hear(&original, &recorded, &mesh, key, expected, &mut suspect)?;
-    let blind = match heard.ln_p_payload <= LN_P_FOUND {
-        true => None,
-        false => Some(read_blind(&mesh, key, expected, &mut suspect)?),
-    };
-    suspect.step(Stage::Test, 1.0)?;
-    Ok(heard.compared(original, mesh, blind))
+    Ok(Informed {
+        heard: hear(&original, &recorded, &mesh, key, expected, loudest, suspect)?,
+        original,
+        suspect: mesh,
+    })
 }
 
 fn hear(
@@ -229,6 +233,7 @@ fn hear(
     suspect: &Mesh,
     key: &Key,
     expected: Option<Payload>,
+    mut loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(shape);
@@ -240,9 +245,14 @@ fn hear(
         recorded.read(mesh, motions, key, &mut |mut way| {
             way.list = 2 * (known + way.list);
             way.ln_num_tests += ln_num_searches;
-            is_settled = scales.hear(&way);
+            let is_enough = scales.hear(&way);
+            match &mut loudest {
+                Some(loudest) => loudest.hear(way),
+                None => is_settled = is_enough,
+            }
             is_settled
         });
+        is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
         is_settled
     };
     let mut starts = Vec::new();

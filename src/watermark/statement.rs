@@ -20,14 +20,23 @@ pub struct StatedFile {
     pub sha256: String,
 }
 
+/// What a ledger says beside numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Ledger {
+    /// What it calls some buyers, by their numbers.
+    pub names: Vec<(u64, String)>,
+    /// How many triangles the model had that the copies were made of, as [`StampReport`](super::StampReport) says; `None` where the ledger does not.
+    pub triangles: Option<u64>,
+}
+
 /// What was found.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Finding<'a> {
     /// With the key alone, or with an expected payload.
     Reading(&'a Extraction),
-    /// Whose copies are in it, and what the ledger calls some numbers.
-    Tracing(&'a Tracing, &'a [(u64, String)]),
+    /// Whose copies are in it, and what the ledger says of who is named; with the original or a record a picture of the suspect laid on it.
+    Tracing(&'a Tracing, &'a Ledger, Option<&'a Illustration>),
     /// With the original or a record; and a picture of the suspect laid on it.
     Comparison(&'a Comparison, Option<&'a Illustration>),
 }
@@ -107,7 +116,7 @@ impl Statement<'_> {
     fn title(&self) -> &'static str {
         match self.finding {
             Finding::Reading(reading) => reading.sentence,
-            Finding::Tracing(tracing, _) => tracing.sentence,
+            Finding::Tracing(tracing, ..) => tracing.sentence,
             Finding::Comparison(comparison, _) => comparison.sentence,
         }
     }
@@ -119,7 +128,7 @@ impl Statement<'_> {
                 Verdict::Found | Verdict::Present => holds_a_mark(reading.details().ln_p),
                 _ => reading.reason.clone().unwrap_or_default(),
             },
-            Finding::Tracing(tracing, _) => match tracing.traced {
+            Finding::Tracing(tracing, ..) => match tracing.traced {
                 Traced::Named => format!(
                     "Each copy below had a part in the suspect. Beside it is an upper bound of the chance that any of the {} in the ledger is \
                      named so without a part in it; nobody is named where that is above 1 in 10^9.",
@@ -143,7 +152,7 @@ impl Statement<'_> {
 
     /// Who is named, as a table: what a reader looks for first.
     fn answer(&self) -> String {
-        let Finding::Tracing(tracing, names) = self.finding else {
+        let Finding::Tracing(tracing, ledger, _) = self.finding else {
             return String::new();
         };
         if tracing.buyers.is_empty() {
@@ -151,7 +160,8 @@ impl Statement<'_> {
         }
         let mut rows = String::new();
         for buyer in &tracing.buyers {
-            let name = names.iter().find(|(number, _)| *number == buyer.number);
+            let mut names = ledger.names.iter();
+            let name = names.find(|(number, _)| *number == buyer.number);
             let name = name.map_or("", |(_, name)| name);
             let _ = writeln!(
                 rows,
@@ -169,8 +179,17 @@ impl Statement<'_> {
 
     /// Of a comparison: whether the shape is the original's, in words and in a picture.
     fn shape(&self) -> String {
-        let Finding::Comparison(comparison, picture) = self.finding else {
-            return String::new();
+        let (comparison, picture) = match self.finding {
+            Finding::Comparison(comparison, picture) => (comparison, picture),
+            Finding::Tracing(
+                Tracing {
+                    comparison: Some(comparison),
+                    ..
+                },
+                _,
+                picture,
+            ) => (comparison, picture),
+            _ => return String::new(),
         };
         let near = percent(comparison.near);
         let words = match (comparison.shape, comparison.motion) {
@@ -217,9 +236,13 @@ impl Statement<'_> {
                 }
                 reading.input
             }
-            Finding::Tracing(tracing, _) => {
+            Finding::Tracing(tracing, ledger, picture) => {
                 fact("Buyers in the ledger", &grouped(tracing.num_buyers as u64));
                 fact("Ways of reading tested", &tracing.num_ways.to_string());
+                fact(
+                    "What was done to the copy",
+                    &done_to_a_copy(tracing, ledger, picture),
+                );
                 tracing.reading.input
             }
             Finding::Comparison(comparison, picture) => {
@@ -247,7 +270,7 @@ impl Statement<'_> {
     fn limits(&self) -> Vec<&'static str> {
         let caution = match self.finding {
             Finding::Reading(reading) => reading.caution,
-            Finding::Tracing(tracing, _) => tracing.reading.caution,
+            Finding::Tracing(tracing, ..) => tracing.reading.caution,
             Finding::Comparison(..) => None,
         };
         let mut limits = Vec::from_iter(caution);
@@ -255,7 +278,7 @@ impl Statement<'_> {
             Finding::Reading(reading) => {
                 matches!(reading.verdict, Verdict::Found | Verdict::Present)
             }
-            Finding::Tracing(tracing, _) => {
+            Finding::Tracing(tracing, ..) => {
                 matches!(tracing.traced, Traced::Named | Traced::Nobody)
             }
             Finding::Comparison(comparison, _) => {
@@ -271,7 +294,7 @@ impl Statement<'_> {
         } else {
             limits.push("That the model is not the owner's. A mark can be destroyed, and copies of unmarked files hold none.");
         }
-        if let Finding::Tracing(tracing, _) = self.finding
+        if let Finding::Tracing(tracing, ..) = self.finding
             && tracing.traced == Traced::Named
         {
             limits.extend([
@@ -280,7 +303,12 @@ impl Statement<'_> {
                 "That nobody else had a part in it: a share that is too small is not seen.",
             ]);
         }
-        if let Finding::Comparison(comparison, _) = self.finding {
+        let comparison = match self.finding {
+            Finding::Comparison(comparison, _) => Some(comparison),
+            Finding::Tracing(tracing, ..) => tracing.comparison.as_ref(),
+            Finding::Reading(_) => None,
+        };
+        if let Some(comparison) = comparison {
             if is_positive {
                 limits.push(
                     "Anything, if the original or the record was made after the suspect was seen: whoever holds the key can make an \
@@ -293,6 +321,29 @@ impl Statement<'_> {
         }
         limits.push("More than the keyed function it rests on (SipHash-2-4 with keys of 128 bits), which is taken for random to who has no key.");
         limits
+    }
+}
+
+/// What was done to a copy that leaked, as far as there is something to compare the suspect with.
+fn done_to_a_copy(tracing: &Tracing, ledger: &Ledger, picture: Option<&Illustration>) -> String {
+    let mut done = Vec::new();
+    if let Some(comparison) = &tracing.comparison {
+        done = changes(comparison, picture.and_then(|picture| picture.triangles));
+    }
+    let is_compared = tracing
+        .comparison
+        .as_ref()
+        .is_some_and(|own| own.shape == Shape::Same);
+    if let (Some(own), Some(all)) = (tracing.triangles, ledger.triangles.filter(|all| *all > 0)) {
+        let share = percent(own as f64 / all as f64);
+        let (own, all) = (grouped(own as u64), grouped(all));
+        done.push(format!("the suspect has {own} triangles, {share} of the {all} that the ledger gives for the model that was sold"));
+    }
+    match (done.as_slice(), is_compared) {
+        ([], true) => "Nothing that is seen on the original".to_owned(),
+        ([], false) => "Not known: no original or record was at hand that the suspect lies on, and the ledger does not say how many triangles the model had".to_owned(),
+        (done, true) => done.join("; "),
+        (done, false) => format!("{}; more is not known without the original", done.join("; ")),
     }
 }
 

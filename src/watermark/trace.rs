@@ -5,17 +5,24 @@
 //! with the suspect. Which ways of reading are followed may depend on all but messages, so the pilots choose; those that are
 //! tested are charged, and so is every buyer.
 
+use super::compare::{Blind, Compared, Informed, hear_with_original};
 use super::error::Error;
+use super::hearing::Hearing;
 use super::judge::{Judge, Readings};
-use super::report::{Extraction, Input, Verdict};
+use super::loudest::Loudest;
+use super::model::Model;
+use super::overlay::Overlay;
+use super::record::hear_with_record;
+use super::report::{Comparison, Extraction, Input, Verdict};
 use super::suspect::Suspect;
-use crate::bits::Payload;
+use super::testimony::Testimony;
 use crate::carrier::{Carrier, Hypothesis, Reading};
-use crate::code::{Checked, Codeword, Likeness, Numbers, SoftSymbol, Symbol};
-use crate::detection::{LN_P_FOUND, Statistic, union};
+use crate::code::Symbol;
+use crate::detection::{LN_P_FOUND, Statistic};
 use crate::evidence::Evidence;
 use crate::key::Key;
-use crate::progress::Stage;
+use crate::mesh::Mesh;
+use crate::progress::{Progress, Stage};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -49,10 +56,15 @@ pub struct Tracing {
     pub num_buyers: usize,
     /// How many ways of reading were tested.
     pub num_ways: usize,
-    /// What every number that is told was charged: the logarithm of the product of both.
+    /// What each number was charged: the logarithm of the product of both, and of 2. Who is named beside others who were named before is charged
+    /// more.
     pub ln_charge: f64,
+    /// Triangles of the suspect; `None` for evidence.
+    pub triangles: Option<usize>,
     /// What is read with the key alone.
     pub reading: Extraction,
+    /// What is read with the original or the record, where there is one.
+    pub comparison: Option<Comparison>,
 }
 
 /// A buyer who is named.
@@ -83,13 +95,15 @@ pub fn trace<'a>(
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
     suspect.step(Stage::Measure, 0.0)?;
-    let mut readings = Carrier::STANDARD.map(|_| Default::default());
-    for carrier in Carrier::QUICKEST_FIRST {
-        readings[carrier as usize] = carrier.read_until(&mesh, key, &is_loud, &mut suspect)?;
-    }
-    let tracing = conclude(&readings, key, numbers, Input::Model)?;
+    let readings = read_blind(&mesh, key, &is_loud, &mut suspect)?;
+    let reading = Judge::new(key, None, Input::Model).conclude(&readings);
+    let testimonies = testimonies(&readings, &Loudest::default());
+    let tracing = conclude(&testimonies, reading, key, numbers)?;
     suspect.step(Stage::Test, 1.0)?;
-    Ok(tracing)
+    Ok(Tracing {
+        triangles: Some(mesh.triangles.len()),
+        ..tracing
+    })
 }
 
 /// The same of evidence.
@@ -98,7 +112,85 @@ pub fn trace<'a>(
 /// [`Error::Payload`] for a number out of range.
 pub fn trace_evidence(evidence: &Evidence, key: &Key, numbers: &[u64]) -> Result<Tracing, Error> {
     let read = |carrier| evidence.measurement(carrier).read_until(key, &is_loud);
-    conclude(&Carrier::STANDARD.map(read), key, numbers, Input::Evidence)
+    let readings = Carrier::STANDARD.map(read);
+    let reading = Judge::new(key, None, Input::Evidence).conclude(&readings);
+    conclude(
+        &testimonies(&readings, &Loudest::default()),
+        reading,
+        key,
+        numbers,
+    )
+}
+
+/// As [`trace`], with the original: the model as [`prepare`](super::prepare) or [`embed`](super::embed) got it. Buyers are named so who are named
+/// by the suspect alone no more: of a piece with other triangles, a mirror image, a copy that was smoothed or simplified. Second comes the suspect laid
+/// on the original, as from [`compare_overlaid`](super::compare_overlaid).
+///
+/// # Errors
+/// As [`trace`], and where the original cannot be read.
+pub fn trace_overlaid<'a, 'b>(
+    suspect: impl Into<Suspect<'a>>,
+    original: impl Into<Model<'b>>,
+    key: &Key,
+    numbers: &[u64],
+) -> Result<(Tracing, Option<Overlay>), Error> {
+    let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
+    let heard = Some(&mut loudest);
+    let informed = hear_with_original(&mut suspect, &original.into(), key, None, heard)?;
+    let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
+    Ok((tracing, compared.overlaid().1))
+}
+
+/// As [`trace`], with the record of an embedding in the stead of the original, under the same key, whatever payload it was made with. The
+/// suspect is laid on the recorded shape, as from [`compare_overlaid_with_record`](super::compare_overlaid_with_record).
+///
+/// # Errors
+/// As [`trace`], and [`Error::Record`] as [`compare_with_record`](super::compare_with_record).
+pub fn trace_overlaid_with_record<'a>(
+    suspect: impl Into<Suspect<'a>>,
+    record: &str,
+    key: &Key,
+    numbers: &[u64],
+) -> Result<(Tracing, Option<Overlay>), Error> {
+    let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
+    let heard = Some(&mut loudest);
+    let informed = hear_with_record(&mut suspect, record, key, None, heard)?;
+    let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
+    Ok((tracing, compared.overlaid_on_record().1))
+}
+
+/// What was heard with the original or the record, and what is read blind, which has a half of the probability.
+fn conclude_informed(
+    informed: Informed,
+    loudest: &Loudest,
+    mut suspect: Suspect,
+    key: &Key,
+    numbers: &[u64],
+) -> Result<(Tracing, Compared), Error> {
+    let is_enough = |reading: &Reading| loudest.are_loud() || is_loud(reading);
+    let readings = read_blind(&informed.suspect, key, &is_enough, &mut suspect)?;
+    let reading = Judge::new(key, None, Input::Model)
+        .one_of(2)
+        .conclude(&readings);
+    let compared = informed.concluded(Some(Blind::of(&reading)));
+    let mut tracing = conclude(&testimonies(&readings, loudest), reading, key, numbers)?;
+    tracing.triangles = Some(compared.suspect.triangles.len());
+    tracing.hear(&compared.comparison);
+    suspect.step(Stage::Test, 1.0)?;
+    Ok((tracing, compared))
+}
+
+fn read_blind(
+    mesh: &Mesh,
+    key: &Key,
+    is_enough: &dyn Fn(&Reading) -> bool,
+    progress: &mut dyn Progress,
+) -> Result<Readings, Error> {
+    let mut readings = Carrier::STANDARD.map(|_| Default::default());
+    for carrier in Carrier::QUICKEST_FIRST {
+        readings[carrier as usize] = carrier.read_until(mesh, key, is_enough, progress)?;
+    }
+    Ok(readings)
 }
 
 /// Whether pilots speak so loudly that nothing has to be undone first.
@@ -115,30 +207,14 @@ fn pilots(hypothesis: &Hypothesis) -> Statistic {
 }
 
 fn conclude(
-    readings: &Readings,
+    testimonies: &[Testimony],
+    reading: Extraction,
     key: &Key,
     numbers: &[u64],
-    input: Input,
 ) -> Result<Tracing, Error> {
     let numbers: BTreeSet<u64> = numbers.iter().copied().collect();
-    let reading = Judge::new(key, None, input).conclude(readings);
-    let ways = ways(readings);
-    let ln_charge =
-        libm::log((numbers.len() * ways.len()).max(1) as f64) + ln_distinct(numbers.len());
-    let (permutation, check) = (Numbers::new(key), Checked::new(key));
-    let mut buyers = Vec::new();
-    for number in &numbers {
-        let codeword = Codeword::new(check.message(permutation.payload(*number)?));
-        let bounds = ways.iter().map(|way| way.ln_p(&codeword));
-        let ln_p = union(bounds.fold(0.0, f64::min), ln_charge);
-        if ln_p <= LN_P_FOUND {
-            buyers.push(Buyer {
-                number: *number,
-                ln_p,
-            });
-        }
-    }
-    buyers.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let hearing = Hearing::new(testimonies, key, &numbers)?;
+    let buyers = hearing.named();
     let traced = match reading.verdict {
         _ if !buyers.is_empty() => Traced::Named,
         Verdict::Found | Verdict::Present => Traced::Nobody,
@@ -150,65 +226,77 @@ fn conclude(
         sentence: traced.sentence(),
         buyers,
         num_buyers: numbers.len(),
-        num_ways: ways.len(),
-        ln_charge,
+        num_ways: testimonies.len(),
+        ln_charge: hearing.ln_charge(),
+        triangles: None,
         reading,
+        comparison: None,
     })
 }
 
-/// Payloads are distinct: who knows all others' has so many fewer to choose from for one buyer's.
-fn ln_distinct(num_buyers: usize) -> f64 {
-    let all = (1u64 << Payload::BITS) as f64;
-    -libm::log1p(-(num_buyers as f64 / all).min(0.5))
+impl Tracing {
+    /// Hears what is read with the original or the record.
+    fn hear(&mut self, comparison: &Comparison) {
+        let is_mark = matches!(comparison.verdict, Verdict::Found | Verdict::Present);
+        match self.traced {
+            Traced::Named | Traced::Nobody => {}
+            _ if is_mark => {
+                self.traced = Traced::Nobody;
+                self.sentence = self.traced.sentence();
+            }
+            _ => {
+                self.traced = Traced::NoMark;
+                self.sentence = comparison.sentence;
+            }
+        }
+        self.comparison = Some(comparison.clone());
+    }
 }
 
 /// What is tested: of each carrier and piece the way of reading in which the pilots agree best, and those that have none for they spent
-/// them; and the best of both carriers together.
-fn ways(readings: &Readings) -> Vec<Likeness> {
+/// them; with the original or a record, of each way to look at the suspect the loudest; and the loudest of several together.
+fn testimonies(readings: &Readings, loudest: &Loudest) -> Vec<Testimony> {
+    let mut all: Vec<Testimony> = readings.iter().flat_map(chosen).collect();
+    let blind = Carrier::STANDARD.map(|carrier| loudest_of(&readings[carrier as usize]));
+    let informed = loudest.testimonies();
+    if let [Some(a), Some(b)] = &blind {
+        all.push(Testimony::together(&[a, b]));
+    }
+    if let (Some(told), Some(ring)) = (informed.first(), &blind[Carrier::Ring as usize]) {
+        all.push(Testimony::together(&[told, ring]));
+    }
+    all.extend(informed);
+    all
+}
+
+/// Of a carrier's ways of reading, those that are tested alone.
+fn chosen(reading: &Reading) -> Vec<Testimony> {
     let mut chosen: Vec<&Hypothesis> = Vec::new();
-    let mut together: Vec<SoftSymbol> = Vec::new();
-    let mut num_together = 0;
-    for reading in readings {
-        let (mut loudest, mut in_piece) = (None, Vec::<&Hypothesis>::new());
-        for hypothesis in &reading.hypotheses {
-            let exponent = -pilots(hypothesis).ln_p();
-            if !hypothesis
-                .symbols
+    for hypothesis in &reading.hypotheses {
+        let place = match has_pilots(hypothesis) {
+            true => chosen
                 .iter()
-                .any(|soft| soft.symbol == Symbol::Pilot)
-            {
-                chosen.push(hypothesis);
-                continue;
-            }
-            if loudest.is_none_or(|(most, _)| exponent > most) {
-                loudest = Some((exponent, hypothesis));
-            }
-            let same = in_piece
-                .iter_mut()
-                .find(|one| one.piece == hypothesis.piece);
-            match same {
-                Some(best) if -pilots(best).ln_p() >= exponent => {}
-                Some(best) => *best = hypothesis,
-                None => in_piece.push(hypothesis),
-            }
-        }
-        chosen.extend(in_piece);
-        if let Some((_, hypothesis)) = loudest {
-            // A carrier counts as much as its pilots agree.
-            let share = pilots(hypothesis).agreement().max(0.0);
-            let symbols = hypothesis.symbols.iter();
-            together.extend(symbols.map(|soft| SoftSymbol {
-                value: soft.value * share,
-                ..*soft
-            }));
-            num_together += 1;
+                .position(|one| has_pilots(one) && one.piece == hypothesis.piece),
+            false => None,
+        };
+        match place {
+            Some(place) if pilots(chosen[place]).ln_p() <= pilots(hypothesis).ln_p() => {}
+            Some(place) => chosen[place] = hypothesis,
+            None => chosen.push(hypothesis),
         }
     }
-    let alone = chosen
-        .iter()
-        .map(|hypothesis| Likeness::new(&hypothesis.symbols));
-    let together = (num_together > 1).then(|| Likeness::new(&together));
-    alone.chain(together).collect()
+    chosen.into_iter().map(Testimony::of_hypothesis).collect()
+}
+
+fn loudest_of(reading: &Reading) -> Option<Testimony> {
+    let with_pilots = reading.hypotheses.iter().filter(|one| has_pilots(one));
+    let best = with_pilots.min_by(|a, b| pilots(a).ln_p().total_cmp(&pilots(b).ln_p()));
+    best.map(Testimony::of_hypothesis)
+}
+
+fn has_pilots(hypothesis: &Hypothesis) -> bool {
+    let mut symbols = hypothesis.symbols.iter();
+    symbols.any(|soft| soft.symbol == Symbol::Pilot)
 }
 
 impl Traced {

@@ -1,14 +1,16 @@
 //! Tracing: who is named, and that nobody else is.
 
-use crate::support::fixtures::key;
+use crate::support::fixtures::{asteroid, key};
 use glam::DVec3;
+use meshmark::internals::attack::{crop, quantize, similarity, simplify};
 use meshmark::internals::code::{Checked, Codeword, Likeness, SoftSymbol, Symbol};
 use meshmark::internals::document::Document;
 use meshmark::internals::mesh::Mesh;
-use meshmark::internals::scene::Scene;
+use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    EmbedOptions, Error, Files, Payload, Plan, Surface, Traced, Tracing, demo_model, measure,
-    prepare, trace, trace_evidence,
+    EmbedOptions, Error, Files, Payload, Plan, RecordOptions, Shape, Surface, Traced, Tracing,
+    Verdict, demo_model, measure, prepare, record, trace, trace_evidence, trace_overlaid,
+    trace_overlaid_with_record,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -95,6 +97,75 @@ fn buyers_who_mix_their_copies_are_named() {
         let tracing = traced(&mixed(&plan, numbers, mix), &ledger);
         assert_eq!(named(&tracing), numbers, "{name}");
     }
+}
+
+/// A model, its plan and its record.
+fn sold() -> (Vec<u8>, Plan, String) {
+    let original = to_glb(&asteroid());
+    let (plan, specimen) = prepare(&original, &key(72), &EmbedOptions::default()).unwrap();
+    let record = record(&original, &specimen, &key(72), &RecordOptions::default()).unwrap();
+    (original, plan, record)
+}
+
+/// A piece that was cut out, with other triangles, and moved.
+fn piece_of(mesh: &Mesh) -> Vec<u8> {
+    let piece = quantize(&simplify(&crop(mesh, 0.3, 3), 0.5), 10);
+    to_glb(&similarity(&piece, 4))
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn with_the_original_or_the_record_who_leaks_a_piece_is_named() {
+    let (original, plan, record) = sold();
+    let (key, ledger) = (key(72), (1..=1000).collect::<Vec<u64>>());
+    let piece = piece_of(&mesh(&plan.stamp(17).unwrap().model));
+    let blind = trace(&piece, &key, &ledger).unwrap();
+    assert_eq!(named(&blind), [0; 0]);
+    assert_eq!(blind.comparison, None);
+    let (tracing, overlay) = trace_overlaid(&piece, &original, &key, &ledger).unwrap();
+    assert_eq!(named(&tracing), [17]);
+    assert_eq!(tracing.traced, Traced::Named);
+    let comparison = tracing.comparison.unwrap();
+    assert_eq!(
+        (comparison.shape, comparison.verdict),
+        (Shape::Same, Verdict::Found)
+    );
+    assert!(overlay.is_some_and(|overlay| !overlay.is_recorded));
+    let (tracing, overlay) = trace_overlaid_with_record(&piece, &record, &key, &ledger).unwrap();
+    assert_eq!(named(&tracing), [17]);
+    assert!(overlay.is_some_and(|overlay| overlay.is_recorded));
+    // Whoever is not in the ledger is not named, and the mark is there all the same.
+    let without: Vec<u64> = ledger.iter().copied().filter(|n| *n != 17).collect();
+    let (tracing, _) = trace_overlaid(&piece, &original, &key, &without).unwrap();
+    assert_eq!(named(&tracing), [0; 0]);
+    assert_eq!(tracing.traced, Traced::Nobody);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn with_the_original_who_average_and_cut_are_named() {
+    let (original, plan, _) = sold();
+    let (key, ledger) = (key(72), (1..=1000).collect::<Vec<u64>>());
+    let piece = piece_of(&mixed(&plan, &[3, 8], average));
+    assert_eq!(named(&trace(&piece, &key, &ledger).unwrap()), [0; 0]);
+    let (tracing, _) = trace_overlaid(&piece, &original, &key, &ledger).unwrap();
+    assert_eq!(named(&tracing), [3, 8]);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn with_the_original_nobody_is_named_in_what_is_no_copy() {
+    let (original, plan, record) = sold();
+    let ledger: Vec<u64> = (1..=1000).collect();
+    // The original itself, and a copy with another key.
+    let copy = plan.stamp(17).unwrap().model;
+    for (suspect, number) in [(&original, 72), (&copy, 73)] {
+        let (tracing, _) = trace_overlaid(suspect, &original, &key(number), &ledger).unwrap();
+        assert_eq!(named(&tracing), [0; 0]);
+        assert_eq!(tracing.traced, Traced::NoMark);
+        let comparison = tracing.comparison.unwrap();
+        assert_eq!(comparison.shape, Shape::Same);
+        assert_eq!(tracing.sentence, comparison.sentence);
+    }
+    let refused = trace_overlaid_with_record(&copy, &record, &key(73), &ledger);
+    assert!(matches!(refused, Err(Error::Record(_))));
 }
 
 #[wasm_bindgen_test(unsupported = test)]

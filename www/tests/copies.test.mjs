@@ -50,7 +50,29 @@ test("copies are stamped from a plan, read and traced", { timeout: SLOW }, () =>
   assert.deepEqual(measured.buyers.map(({ number }) => number), [7]);
   assert.equal(measured.reading.input, "evidence");
   assert.match(measured.statement, /Evidence that somebody measured/);
+  assert.equal(measured.triangles, null);
+  assert.equal(tracing.triangles, copy.report.triangles);
+  assert.equal(tracing.comparison, null);
   assert.match(meshmark.stateReading(copy.model, KEY, { statement }), /Your mark was found\./);
+});
+
+test("a copy is traced with the original or a record, and laid on it", { timeout: SLOW }, () => {
+  const original = meshmark.demoModel();
+  const { plan, report } = meshmark.prepare(original, KEY);
+  const record = meshmark.record(original, report, KEY);
+  const { model } = meshmark.stamp(plan, 7);
+  const ledger = Float64Array.of(6, 7, 8);
+  const statement = { triangles: 2 * report.vertices };
+  for (const beside of [{ original }, { record }]) {
+    const tracing = meshmark.trace(model, KEY, ledger, { ...beside, overlay: true, statement });
+    assert.deepEqual(tracing.buyers.map(({ number }) => number), [7]);
+    assert.deepEqual([tracing.comparison.verdict, tracing.comparison.shape], ["found", "same"]);
+    assert.equal(tracing.overlay.isRecorded, "record" in beside);
+    assert.match(tracing.statement, /<img alt="Three pictures/);
+    assert.match(tracing.statement, /that the ledger gives/);
+  }
+  assert.throws(() => meshmark.trace(model, KEY, ledger, { original, record }), { code: "options.argument" });
+  assert.throws(() => meshmark.trace(model, KEY, ledger, { record: "{}" }), { code: "record.not-a-record" });
 });
 
 test("what is no plan or no number is refused by name", () => {

@@ -14,6 +14,7 @@ interface Entry {
   file: string;
   sha256: string;
   date: string;
+  triangles: number;
 }
 
 /** What came of all buyers. */
@@ -51,7 +52,7 @@ export async function copiesFor(model: Model, names: string[], first: number, st
       }
       const file = folder + main;
       numWeaker += Number(report.isWeaker);
-      entries.push({ number: report.number, name, file, sha256: report.markedSha256, date: new Date().toISOString() });
+      entries.push({ number: report.number, name, file, sha256: report.markedSha256, date: new Date().toISOString(), triangles: report.triangles });
       task.say(`Copy ${entries.length} of ${names.length}: ${name}`, entries.length / names.length);
     }
   });

@@ -1,8 +1,8 @@
 /** Check: a suspect and a key in, one sentence out; several suspects or keys, and a line for each. */
-import type { DetailedExtraction, Inspection, Tracing } from "meshmark";
+import type { DetailedExtraction, Inspection, Overlay, Tracing } from "meshmark";
 import { answersList, chargeWords, isFound, type Line } from "./answers";
 import { CheckStage } from "./check-stage";
-import { answers, compared, comparisonRows, headlineOf, type Compared } from "./comparing";
+import { answers, argumentsOf, compared, comparisonRows, headlineOf, naming, shapeAnswer, statedFiles, type Compared } from "./comparing";
 import { button, find, h, setProblem } from "./dom";
 import { engine } from "./engine";
 import { GivenField, isRecord, type Given } from "./given";
@@ -105,12 +105,12 @@ export class Check extends View<CheckStage> {
       return;
     }
     this.#dropLaid();
-    if (this.#given.given) {
-      await this.#compare(model, this.#given.given, expected);
+    if (this.#ledger) {
+      await this.#trace(model, this.#ledger, this.#given.given);
       return;
     }
-    if (this.#ledger) {
-      await this.#trace(model, this.#ledger);
+    if (this.#given.given) {
+      await this.#compare(model, this.#given.given, expected);
       return;
     }
     if (keys.length > 0 || this.several.length > 1) {
@@ -166,7 +166,7 @@ export class Check extends View<CheckStage> {
 
   /** Reads a suspect with its original, or with the record of marking it. */
   async #compare(model: Model, given: Given, expected: string | null): Promise<void> {
-    const problem = isEvidence(model) || severalKeys().length > 0 || this.several.length > 1 || this.#ledger ? "With an original or a record, one model is checked with one key; no evidence, no ledger, and not several." : null;
+    const problem = isEvidence(model) || severalKeys().length > 0 || this.several.length > 1 ? "With an original or a record, one model is checked with one key; no evidence, and not several." : null;
     setProblem(this.#given.input, problem);
     if (problem) {
       this.#given.input.focus();
@@ -179,7 +179,11 @@ export class Check extends View<CheckStage> {
     }
     const card = this.#comparisonCard(model, given, key, expected, answer);
     this.#show({ card, model, keys: key, expected, ledger: null, given });
-    const { overlay } = answer;
+    await this.#lay(model, answer.overlay);
+  }
+
+  /** Shows the suspect where it lies on the original, if it does. */
+  async #lay(model: Model, overlay: Overlay | null): Promise<void> {
     if (overlay) {
       this.#isLaid = true;
       await this.stage.showLaid(overlay, () => this.model === model && this.#isLaid);
@@ -214,8 +218,8 @@ export class Check extends View<CheckStage> {
     );
   }
 
-  /** Whose copies a model was made of. */
-  async #trace(model: Model, ledger: Ledger): Promise<void> {
+  /** Whose copies a model was made of; with the original or the record, where there is one. */
+  async #trace(model: Model, ledger: Ledger, given: Given | null): Promise<void> {
     const problem = isEvidence(model) || severalKeys().length > 0 || this.several.length > 1 ? "With a ledger, one model is checked with one key; no evidence, and not several." : null;
     setProblem(this.#ledgerFile, problem);
     if (problem) {
@@ -223,33 +227,38 @@ export class Check extends View<CheckStage> {
       return;
     }
     const key = keySource();
-    const sha256 = this.inspection?.sha256 ?? "unknown";
-    const statement = {
-      ...(key.owner === null ? {} : { owner: key.owner }),
-      date: new Date().toISOString(),
-      files: [{ role: "Suspect", name: model.name, bytes: (model.original ?? model.bytes).length, sha256 }],
-      names: Object.fromEntries(ledger.names),
-      commands: [`meshmark trace ${model.name} --ledger ${ledger.file} ${key.owner === null ? "--key-file KEY" : `--owner ${JSON.stringify(key.owner)} --passphrase-file PASSPHRASE`}`],
-    };
     const tracing = await this.run(`Tracing ${model.name}`, async (task) => {
       const client = await engine;
+      const [suspect, ...others] = await statedFiles(model, given);
+      const statement = {
+        ...(key.owner === null ? {} : { owner: key.owner }),
+        date: new Date().toISOString(),
+        files: [suspect!, { role: "Ledger", name: ledger.file, bytes: ledger.bytes, sha256: ledger.sha256 }, ...others],
+        names: Object.fromEntries(ledger.names),
+        triangles: ledger.triangles,
+        commands: [`meshmark trace ${model.name} --ledger ${ledger.file} ${argumentsOf(key, given)}`],
+      };
+      const beside = given === null ? {} : { overlay: true, ...(given.kind === "record" ? { record: given.text } : { original: given.model.bytes, originalFiles: given.model.buffers }) };
       const numbers = Float64Array.from(ledger.names.keys());
       const { signal, onProgress } = task;
-      return withKey(client, key.make, task, (bytes) => client.trace(model.bytes, bytes, numbers, { files: model.buffers, statement, signal, onProgress }));
+      const options = { files: model.buffers, statement, signal, onProgress, ...beside };
+      return withKey(client, key.make, task, (bytes) => client.trace(model.bytes, bytes, numbers, options).catch(naming(given?.name ?? model.name)));
     });
     if (tracing) {
-      this.#show({ card: this.#tracingCard(model, ledger, tracing), model, keys: key, expected: this.#expected.value || null, ledger, given: null });
+      this.#show({ card: this.#tracingCard(model, ledger, given, tracing), model, keys: key, expected: this.#expected.value || null, ledger, given });
+      await this.#lay(model, tracing.overlay ?? null);
     }
   }
 
-  #tracingCard(model: Model, ledger: Ledger, tracing: Tracing): HTMLElement {
-    const { traced, sentence, buyers, numBuyers, statement = "" } = tracing;
+  #tracingCard(model: Model, ledger: Ledger, given: Given | null, tracing: Tracing): HTMLElement {
+    const { traced, sentence, buyers, numBuyers, comparison, statement = "" } = tracing;
     const buyer = ({ number, lnP }: Tracing["buyers"][number]) => h("li", {}, h("strong", {}, ledger.names.get(number) || `Number ${number}`), h("p", { class: "hint" }, `Copy ${number}; by chance `, chance(lnP)));
     return card(
       traced === "named" ? "found" : traced === "nobody" ? "present" : traced === "no-mark" ? "none" : "cannot-check",
       TRACED[traced],
-      [`${model.name}, with the ${numBuyers} buyers of ${ledger.file}; that they are so many is charged in each chance.`, sentence],
+      [`${model.name}, with the ${numBuyers} buyers of ${ledger.file}${given ? ` and with the ${given.kind} ${given.name}` : ""}; that they are so many is charged in each chance.`, sentence],
       h("ul", { class: "copies" }, ...buyers.map(buyer)),
+      ...(given && comparison ? [h("dl", { class: "answers" }, shapeAnswer(comparison, given))] : []),
       ...(traced === "named" ? [h("p", { class: "hint" }, "A copy may have been stolen from its buyer, and whoever keeps the ledger can stamp any number: the report says what this does not prove.")] : []),
       actions(
         button("Save report (HTML)", () => save(renamed(model.name, "report.html"), statement, "text/html")),

@@ -1,6 +1,6 @@
 /** Comparing a suspect with its original, or with a record: the call, and both answers in words. */
 import { MeshmarkError } from "meshmark/client";
-import type { Comparison, Overlay } from "meshmark";
+import type { Comparison, Overlay, StatedFile } from "meshmark";
 import { sha256 } from "./digest";
 import { h } from "./dom";
 import { engine } from "./engine";
@@ -15,25 +15,37 @@ import { isMark, VERDICTS } from "./words";
 /** A comparison with all that the page asks for. */
 export type Compared = Comparison & { lnP: number; statement: string; overlay: Overlay | null };
 
+/** The files that a statement is about: the suspect, and what it is compared with. */
+export async function statedFiles(model: Model, given: Given | null): Promise<StatedFile[]> {
+  const bytesOf = ({ bytes, original }: Model) => original ?? bytes;
+  const stated = async (role: string, name: string, bytes: Uint8Array<ArrayBuffer>) => ({ role, name, bytes: bytes.length, sha256: await sha256(bytes) });
+  const suspect = await stated("Suspect", model.name, bytesOf(model));
+  switch (given?.kind) {
+    case "original":
+      return [suspect, await stated("Original", given.name, bytesOf(given.model))];
+    case "record":
+      return [suspect, await stated("Record", given.name, given.bytes)];
+    default:
+      return [suspect];
+  }
+}
+
+/** What follows a command that repeats something on the command line: what the suspect is compared with, and whose key it was. */
+export function argumentsOf(key: KeySource, given: Given | null): string {
+  const owner = key.owner === null ? "--key-file KEY" : `--owner ${JSON.stringify(key.owner)} --passphrase-file PASSPHRASE`;
+  const work = key.work === null ? "" : ` --work ${JSON.stringify(key.work)}`;
+  return `${given ? `--${given.kind} ${given.name} ` : ""}${owner}${work}`;
+}
+
 /** Compares, and states what was found. */
 export async function compared(model: Model, given: Given, key: KeySource, task: Task): Promise<Compared> {
   const client = await engine;
   const { signal, onProgress } = task;
-  const role = given.kind === "original" ? "Original" : "Record";
-  const bytesOf = ({ bytes, original }: Model) => original ?? bytes;
-  const suspectBytes = bytesOf(model);
-  const givenBytes = given.kind === "original" ? bytesOf(given.model) : given.bytes;
-  const files = [
-    { role: "Suspect", name: model.name, bytes: suspectBytes.length, sha256: await sha256(suspectBytes) },
-    { role, name: given.name, bytes: givenBytes.length, sha256: await sha256(givenBytes) },
-  ];
-  const owner = key.owner === null ? "--key-file KEY" : `--owner ${JSON.stringify(key.owner)} --passphrase-file PASSPHRASE`;
-  const work = key.work === null ? "" : ` --work ${JSON.stringify(key.work)}`;
   const statement = {
     ...(key.owner === null ? {} : { owner: key.owner }),
     date: new Date().toISOString(),
-    files,
-    commands: [`meshmark extract ${model.name} --${given.kind} ${given.name} ${owner}${work}`],
+    files: await statedFiles(model, given),
+    commands: [`meshmark extract ${model.name} ${argumentsOf(key, given)}`],
   };
   const options = { files: model.buffers, details: true, overlay: true, statement, signal, onProgress };
   return withKey(client, key.make, task, async (bytes) => {
@@ -46,7 +58,7 @@ export async function compared(model: Model, given: Given, key: KeySource, task:
 }
 
 /** What is wrong with a record is said by the name of its file. */
-function naming(name: string): (error: unknown) => never {
+export function naming(name: string): (error: unknown) => never {
   return (error) => {
     throw error instanceof MeshmarkError && error.code.startsWith("record.") ? new MeshmarkError(error.code, `“${name}”: ${error.message}`) : error;
   };
@@ -58,8 +70,13 @@ export function answers(comparison: Compared, given: Given): HTMLElement {
     "dl",
     { class: "answers" },
     h("div", { "data-answer": isMark(comparison) ? "yes" : "no" }, h("dt", {}, "Is your mark in it?"), h("dd", {}, ...markWords(comparison))),
-    h("div", { "data-answer": comparison.shape === "same" ? "yes" : "no" }, h("dt", {}, "Is the shape the original’s?"), h("dd", {}, shapeWords(comparison, given))),
+    shapeAnswer(comparison, given),
   );
+}
+
+/** Whether the shape is the original's. */
+export function shapeAnswer(comparison: Comparison, given: Given): HTMLElement {
+  return h("div", { "data-answer": comparison.shape === "same" ? "yes" : "no" }, h("dt", {}, "Is the shape the original’s?"), h("dd", {}, shapeWords(comparison, given)));
 }
 
 function markWords(comparison: Compared): (Node | string)[] {
@@ -76,7 +93,7 @@ function markWords(comparison: Compared): (Node | string)[] {
   }
 }
 
-function shapeWords({ shape, near, covered, isMirrored, motion }: Compared, { kind }: Given): Node {
+function shapeWords({ shape, near, covered, isMirrored, motion }: Comparison, { kind }: Given): Node {
   const percent = (share: number) => `${Math.round(share * 100)} %`;
   const original = kind === "record" ? "the shape in the record" : "the original";
   const words =

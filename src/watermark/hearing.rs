@@ -6,18 +6,30 @@
 
 use super::error::Error;
 use super::testimony::{Mix, Testimony};
-use super::trace::Buyer;
 use crate::bits::Payload;
 use crate::code::{Checked, Codeword, Likeness, Numbers};
 use crate::detection::{LN_P_FOUND, union};
 use crate::key::Key;
+use serde::Serialize;
 use std::collections::BTreeSet;
-use std::f64::consts::LN_2;
+use std::f64::consts::{LN_2, LN_10};
 
 /// Rounds of the hearing: in each, one buyer more is supposed to have had a part.
 const MOST_ROUNDS: usize = 6;
 /// Who is supposed to have had a part stands out among all buyers, at odds of 1 in 10: it decides what is heard, and proves nothing.
-const LN_P_SUPPOSED: f64 = -2.302_585_092_994_046;
+const LN_P_SUPPOSED: f64 = -LN_10;
+
+/// A buyer who is named.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Buyer {
+    /// The number of the copy.
+    pub number: u64,
+    /// Natural logarithm of a bound of the probability that any buyer of the ledger who had no part in the suspect would be named so, every
+    /// buyer and every way of reading charged.
+    pub ln_p: f64,
+}
 
 /// All that is heard.
 pub(super) struct Hearing<'a> {

@@ -38,6 +38,7 @@ pub use error::{Advice, Error, PlanError, RecordError};
 #[cfg(feature = "local")]
 pub use extract::detect_with_local;
 pub use extract::{detect, extract, extract_many, measure, verify};
+pub use hearing::Buyer;
 pub use illustration::Illustration;
 pub use inspect::{Inspection, inspect};
 pub use model::{Model, decompress, file_names};
@@ -58,5 +59,5 @@ pub use report::{
 pub use statement::{Finding, Ledger, StatedFile, Statement};
 pub use suspect::{Surface, Suspect};
 pub use trace::{
-    Buyer, Traced, Tracing, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
+    Traced, Tracing, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
 };

@@ -326,18 +326,20 @@ impl Statement<'_> {
 
 /// What was done to a copy that leaked, as far as there is something to compare the suspect with.
 fn done_to_a_copy(tracing: &Tracing, ledger: &Ledger, picture: Option<&Illustration>) -> String {
-    let mut done = Vec::new();
-    if let Some(comparison) = &tracing.comparison {
-        done = changes(comparison, picture.and_then(|picture| picture.triangles));
-    }
-    let is_compared = tracing
-        .comparison
-        .as_ref()
-        .is_some_and(|own| own.shape == Shape::Same);
-    if let (Some(own), Some(all)) = (tracing.triangles, ledger.triangles.filter(|all| *all > 0)) {
-        let share = percent(own as f64 / all as f64);
-        let (own, all) = (grouped(own as u64), grouped(all));
-        done.push(format!("the suspect has {own} triangles, {share} of the {all} that the ledger gives for the model that was sold"));
+    let seen = picture.and_then(|picture| picture.triangles);
+    let comparison = tracing.comparison.as_ref();
+    let mut done = comparison.map_or(Vec::new(), |comparison| changes(comparison, seen));
+    let is_compared = comparison.is_some_and(|own| own.shape == Shape::Same);
+    let sold = ledger.triangles.filter(|all| *all > 0);
+    // What was counted where the suspect lies on the original says more.
+    if seen.is_none()
+        && let (Some(own), Some(sold)) = (tracing.triangles, sold)
+    {
+        let share = percent(own as f64 / sold as f64);
+        let (own, sold) = (grouped(own as u64), grouped(sold));
+        done.push(format!(
+            "the suspect has {own} triangles, {share} of the {sold} that the ledger gives for the model that was sold"
+        ));
     }
     match (done.as_slice(), is_compared) {
         ([], true) => "Nothing that is seen on the original".to_owned(),

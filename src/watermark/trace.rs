@@ -7,7 +7,7 @@
 
 use super::compare::{Blind, Compared, Informed, hear_with_original};
 use super::error::Error;
-use super::hearing::Hearing;
+use super::hearing::{Buyer, Hearing};
 use super::judge::{Judge, Readings};
 use super::loudest::Loudest;
 use super::model::Model;
@@ -65,18 +65,6 @@ pub struct Tracing {
     pub reading: Extraction,
     /// What is read with the original or the record, where there is one.
     pub comparison: Option<Comparison>,
-}
-
-/// A buyer who is named.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-#[non_exhaustive]
-pub struct Buyer {
-    /// The number of the copy.
-    pub number: u64,
-    /// Natural logarithm of a bound of the probability that any buyer of the ledger who had no part in the suspect would be named so, every
-    /// buyer and every way of reading charged.
-    pub ln_p: f64,
 }
 
 /// Says whose copies a suspect was made of, among the numbers that were issued under a key: copies of one plan or of many.

@@ -177,6 +177,18 @@ fn pieces_hold_the_mark_of_their_scene() {
     }
 }
 
+/// What RING does to an object follows the object's size, as what SOLID did: a pebble far from a rock keeps SOLID.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_that_are_small_keep_their_mark_beneath_ring() {
+    let pebble = moved(&shapes::asteroid(36, 54), 0.06, DVec3::X * 4.0);
+    let scene = marked(&Mesh::joined([shapes::asteroid(40, 60), pebble]));
+    let objects = Pieces::of(&scene).objects;
+    assert_eq!(objects.len(), 2);
+    for object in objects {
+        assert_eq!(found(&similarity(&scene.part(object), 8)), Some(None));
+    }
+}
+
 /// An object and its instance, far apart, are marked once and move as one.
 #[wasm_bindgen_test(unsupported = test)]
 fn pieces_that_are_instances_share_their_mark() {
@@ -197,7 +209,7 @@ fn pieces_that_are_instances_share_their_mark() {
         rms_rel: Strength::STRONG.rms_rel(),
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let message = Checked::new(&key(1)).message(payload());
     let mark = Mark {

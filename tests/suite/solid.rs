@@ -34,7 +34,7 @@ fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
             rms_rel,
             hidden: false,
             share: 1.0,
-            on_top: false,
+            on_top: None,
         },
         owner,
     )
@@ -143,7 +143,7 @@ fn solid_hides_in_rough_surfaces() {
         rms_rel: 0.0004,
         hidden: true,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let result = marked_as(&host, 1);
     let rms = |side: fn(f64) -> bool| {
@@ -254,7 +254,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         rms_rel: 0.0008,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let mark = Mark {
         key: &key(1),

@@ -76,6 +76,11 @@ impl Prepared {
         Prepared { frames }
     }
 
+    /// Whether it is objects that are marked.
+    pub fn is_in_objects(&self) -> bool {
+        self.frames.iter().any(|frame| frame.object.is_some())
+    }
+
     /// The displacement of all vertices of the same host that gives it a mark.
     pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
         let lattice = Lattice::of(mark.key);

@@ -430,7 +430,7 @@ mod tests {
             rms_rel: 0.0004,
             hidden: true,
             share: 1.0,
-            on_top: false,
+            on_top: None,
         };
         let observations: Vec<Observation> = scattered(&mesh, 2000, 1)
             .iter()

@@ -10,7 +10,7 @@ use crate::seed::Seed;
 use glam::DVec3;
 use meshmark::internals::attack::{into_scene, quantize, remesh, similarity, simplify};
 use meshmark::internals::carrier::{Measurement, ring, solid};
-use meshmark::internals::geometry::{Pieces, Pose, diagonal};
+use meshmark::internals::geometry::{Pieces, Pose};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::scene::to_glb;
 use meshmark::{
@@ -24,7 +24,7 @@ use std::path::Path;
 
 /// Objects of fewer vertices are not taken out, and no more than so many of a scene, those of the most vertices.
 const FEWEST_VERTICES: usize = 200;
-const MOST_OBJECTS: usize = 4;
+const MOST_OBJECTS: usize = 3;
 
 /// As a detector reads.
 const MOST_PIECES: usize = 16;
@@ -113,16 +113,19 @@ fn generated() -> Vec<Setting> {
     ]
 }
 
-/// What is done to an object, or to the scene that it was put into. Gets the object's diagonal.
-type Then = (&'static str, fn(&Mesh, f64) -> Mesh);
+/// Puts an object where it is to be found.
+type Place<'a> = &'a dyn Fn(&Mesh) -> Mesh;
+
+/// What is done to an object, or to the scene that it is put into.
+type Then = (&'static str, fn(&Mesh, Place) -> Mesh);
 
 const THEN: [Then; 4] = [
-    ("as it is", |mesh, _| mesh.clone()),
-    ("simplify 50 %", |mesh, _| simplify(mesh, 0.5)),
-    ("isotropic remeshing 1 % of the object", |mesh, size| {
-        remesh(mesh, 0.01 * size / diagonal(&mesh.positions))
+    ("as it is", |mesh, place| place(mesh)),
+    ("simplify 50 %", |mesh, place| simplify(&place(mesh), 0.5)),
+    ("isotropic remeshing 1 %, of the object", |mesh, place| {
+        place(&remesh(mesh, 0.01))
     }),
-    ("quantize 11 bits", |mesh, _| quantize(mesh, 11)),
+    ("quantize 11 bits", |mesh, place| quantize(&place(mesh), 11)),
 ];
 
 /// What was read.
@@ -238,13 +241,11 @@ fn lines(
                 false => format!("one object, alone, {then}"),
                 true => format!("one object, in a scene {TIMES} x as large, {then}"),
             };
-            let suspect = |mesh: &Mesh| {
-                let size = diagonal(&mesh.positions);
-                match is_in_scene {
-                    false => change(mesh, size),
-                    true => change(&into_scene(mesh, TIMES, turn(&row)), size),
-                }
+            let place = |mesh: &Mesh| match is_in_scene {
+                false => mesh.clone(),
+                true => into_scene(mesh, TIMES, turn(&row)),
             };
+            let suspect = |mesh: &Mesh| change(mesh, &place);
             let cell = |(name, alone, of_scene): &(String, Mesh, Mesh)| -> Result<Cell, String> {
                 let own = read(&suspect(alone), &key, payload, turn(&row))?;
                 let of_scene = match own.is_mark {
@@ -372,6 +373,10 @@ fn lines_beside(model: &Model, seed: &Seed) -> Result<Option<(String, Vec<Read>)
     };
     let rows = std::iter::once(None).chain(BESIDE.iter().map(Some));
     let reads = rows.map(halved).collect::<Result<Vec<_>, _>>()?;
+    let said = reads
+        .iter()
+        .map(|read| if read.is_mark { "found" } else { "lost" });
+    eprintln!("{}: {}", model.name, said.collect::<Vec<_>>().join(", "));
     Ok(Some((model.name.clone(), reads)))
 }
 
@@ -440,6 +445,9 @@ fn evidence(mesh: &Mesh) -> Evidence {
 pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
     let settings = folder.map_or_else(|| Ok(generated()), files)?;
     let mut text = format!("seed {}\n", seed.number);
+    if folder.is_none() {
+        let _ = write!(text, "\n{}", beside(seed)?);
+    }
     for strength in STRENGTHS {
         let _ = writeln!(
             text,
@@ -453,9 +461,6 @@ pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
         for line in lines.iter().flatten() {
             let _ = writeln!(text, "{line}");
         }
-    }
-    if folder.is_none() {
-        let _ = write!(text, "\n{}", beside(seed)?);
     }
     Ok(text)
 }

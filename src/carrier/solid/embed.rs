@@ -2,7 +2,7 @@
 
 use super::frame::is_determined;
 use super::lattice::Lattice;
-use super::pitch::{AREAS_TO_EMBED, pitches};
+use super::pitch::pitches_to_embed;
 use super::quantizer::steps_for;
 use super::rounds::{Attempt, Choice, Ground, Rounds, dither};
 use crate::carrier::{Carrier, CarrierError, Host, Mark, Needs};
@@ -72,7 +72,7 @@ pub fn embed_in_frame(
     }
     let ground = ground(host).ok_or_else(|| none(0))?;
     step(progress, Stage::Embed, 0.0)?;
-    let candidates: Vec<f64> = pitches(ground.area(), AREAS_TO_EMBED).collect();
+    let candidates: Vec<f64> = pitches_to_embed(ground.area()).collect();
     let whole = host.share * host.rms_rel * diagonal(&ground.mesh.positions);
     let needs = match is_determined(&ground.pose) {
         true => NEEDS,

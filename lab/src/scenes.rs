@@ -24,7 +24,7 @@ use std::path::Path;
 
 /// Objects of fewer vertices are not taken out, and no more than so many of a scene, those of the most vertices.
 const FEWEST_VERTICES: usize = 200;
-const MOST_OBJECTS: usize = 3;
+const MOST_OBJECTS: usize = 2;
 
 /// As a detector reads.
 const MOST_PIECES: usize = 16;
@@ -182,18 +182,17 @@ struct Cell {
     of_scene: Option<Read>,
 }
 
-/// Everything about one scene at one strength, as lines of the table.
-fn lines(
-    setting: &Setting,
-    strength: (&str, Strength),
-    seed: &Seed,
-) -> Result<Vec<String>, String> {
+/// Prints everything about one scene at one strength, as lines of the table.
+fn print(setting: &Setting, strength: (&str, Strength), seed: &Seed) -> Result<(), String> {
     let purpose = format!("{}, {}", setting.name, strength.0);
     let (key, payload) = (seed.key(&purpose, 0), seed.payload(&purpose));
     let start = std::time::Instant::now();
     let scene = match marked(&setting.file, payload, &key, strength.1) {
         Ok(scene) => scene,
-        Err(code) => return Ok(vec![format!("| {} | {code} | | | |", setting.name)]),
+        Err(code) => {
+            println!("| {} | {code} | | | |", setting.name);
+            return Ok(());
+        }
     };
     let seconds = start.elapsed().as_secs_f64();
     let hosts = setting.objects(&setting.file)?;
@@ -220,7 +219,7 @@ fn lines(
     let turn = |row: &str| seed.number(&format!("{purpose}, {row}"), 0);
     let whole = read(&joined, &key, payload, turn("joined"))?;
     let said = if whole.is_mark { "found" } else { "lost" };
-    let mut lines = vec![format!(
+    println!(
         "| {} | flattened, joined | {said}, {:.0}/{:.0} | {} objects | {} |",
         setting.name,
         whole.solid,
@@ -233,8 +232,7 @@ fn lines(
                 refused.join(", ")
             ),
         },
-    )];
-    eprintln!("{}, {}", strength.0, lines[0]);
+    );
     for is_in_scene in [false, true] {
         for (then, change) in THEN {
             let row = match is_in_scene {
@@ -262,15 +260,10 @@ fn lines(
                 .par_iter()
                 .map(cell)
                 .collect::<Result<Vec<_>, _>>()?;
-            lines.push(line(&setting.name, &row, &cells));
-            eprintln!(
-                "{}, {}",
-                strength.0,
-                lines.last().map_or("", String::as_str)
-            );
+            println!("{}", line(&setting.name, &row, &cells));
         }
     }
-    Ok(lines)
+    Ok(())
 }
 
 fn line(scene: &str, row: &str, cells: &[Cell]) -> String {
@@ -373,10 +366,6 @@ fn lines_beside(model: &Model, seed: &Seed) -> Result<Option<(String, Vec<Read>)
     };
     let rows = std::iter::once(None).chain(BESIDE.iter().map(Some));
     let reads = rows.map(halved).collect::<Result<Vec<_>, _>>()?;
-    let said = reads
-        .iter()
-        .map(|read| if read.is_mark { "found" } else { "lost" });
-    eprintln!("{}: {}", model.name, said.collect::<Vec<_>>().join(", "));
     Ok(Some((model.name.clone(), reads)))
 }
 
@@ -431,8 +420,7 @@ pub fn wrong_keys(folder: Option<&Path>, seed: &Seed, tests: u64) -> Result<Stri
 
 /// What a suspect and each of its pieces show as they are: nothing depends on a key.
 fn evidence(mesh: &Mesh) -> Evidence {
-    let Pieces { objects, patches } = Pieces::of(mesh);
-    let pieces = objects.into_iter().chain(patches).take(MOST_PIECES);
+    let pieces = Pieces::of(mesh).in_order().take(MOST_PIECES);
     let all = std::iter::once(mesh.clone()).chain(pieces.map(|piece| mesh.part(piece)));
     let surfaces = all.flat_map(|piece| solid::Surfaces::new(&piece).plain().take(1));
     Evidence::from_iter([
@@ -441,26 +429,22 @@ fn evidence(mesh: &Mesh) -> Evidence {
     ])
 }
 
-/// Tables of a folder's scenes, at strong and balanced; of generated ones where there is none, and of plain models beside other things.
+/// Tables of a folder's scenes, at strong and balanced; of generated ones where there is none, and of plain models beside other things. Each
+/// line is printed when it is there.
 pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
     let settings = folder.map_or_else(|| Ok(generated()), files)?;
-    let mut text = format!("seed {}\n", seed.number);
+    println!("seed {}", seed.number);
     if folder.is_none() {
-        let _ = write!(text, "\n{}", beside(seed)?);
+        println!("\n{}", beside(seed)?);
     }
     for strength in STRENGTHS {
-        let _ = writeln!(
-            text,
+        println!(
             "\n{}:\n\n| scene | then | marked alone: found | marked in the scene: found of these | lost (SOLID/RING alone -> in the scene) |\n|---|---|--:|--:|---|",
             strength.0
         );
-        let lines = settings
+        settings
             .par_iter()
-            .map(|setting| lines(setting, strength, seed))
-            .collect::<Result<Vec<_>, _>>()?;
-        for line in lines.iter().flatten() {
-            let _ = writeln!(text, "{line}");
-        }
+            .try_for_each(|setting| print(setting, strength, seed))?;
     }
-    Ok(text)
+    Ok(String::new())
 }

@@ -97,7 +97,7 @@ fn stages(criterion: &mut Criterion) {
         rms_rel: RMS_REL,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let mark = Mark {
         key: &key,

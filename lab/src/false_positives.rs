@@ -133,7 +133,7 @@ pub fn table(
                     .collect();
                 ln_ps[number].extend(found);
             }
-            section = document(&part, &names, &ln_ps);
+            section = document(part.title, &names, &ln_ps);
             if part.rounds > 1 {
                 plot = tail(&names, &ln_ps);
             }
@@ -238,13 +238,26 @@ fn tail(names: &[String], ln_ps: &[Vec<f64>]) -> String {
     )
 }
 
-fn document(part: &Part, names: &[String], ln_ps: &[Vec<f64>]) -> String {
+/// The same tail for any suspects: so many tests with keys of their own in all, evenly.
+pub fn section(title: &str, suspects: Vec<(String, Evidence)>, seed: &Seed, tests: u64) -> String {
+    let each = tests.div_ceil(suspects.len() as u64);
+    let (names, evidence): (Vec<String>, Vec<Evidence>) = suspects.into_iter().unzip();
+    let read = |(number, evidence): (u64, &Evidence)| {
+        let tests = (number * each..(number + 1) * each).into_par_iter();
+        let ln_p = |test| extract(evidence, &seed.key(title, test)).details().ln_p;
+        tests.map(ln_p).collect()
+    };
+    let ln_ps: Vec<Vec<f64>> = (0..).zip(&evidence).map(read).collect();
+    document(title, &names, &ln_ps)
+}
+
+fn document(title: &str, names: &[String], ln_ps: &[Vec<f64>]) -> String {
     let tests = ln_ps.iter().map(Vec::len).sum::<usize>();
     let mut text = format!(
         "\n## {}\n\n{tests} keys.\n\n\
          | ln p below that of | bound | at most | all | unmarked | marked by another key and attacked |\n\
          |---|--:|--:|--:|--:|--:|\n",
-        part.title
+        title
     );
     for decade in 1..=DECADES {
         let bound = (0..decade).fold(tests as f64, |bound, _| bound / 10.0);

@@ -15,13 +15,16 @@ mod informed;
 mod journal;
 mod local;
 mod models;
+mod opened;
 mod oracle;
 mod plot;
 mod published;
 mod real;
 mod removal;
 mod report;
+mod room;
 mod run;
+mod scenes;
 mod seed;
 mod study;
 mod surface;
@@ -103,6 +106,13 @@ struct Arguments {
     /// prints tables.
     #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
     local: Option<u64>,
+    /// Instead of the grid: generated scenes of several objects, of which one is taken out, and plain models beside other things; or the
+    /// scenes in a folder; prints tables.
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, group = "instead", conflicts_with_all = GRID)]
+    scenes: Option<Option<PathBuf>>,
+    /// Of --scenes: instead of its tables, so many keys that marked nothing; prints a table.
+    #[arg(long, value_name = "N", requires = "scenes")]
+    wrong_keys: Option<u64>,
     /// Of --wild and --local: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced")]
     strength: Strength,
@@ -162,6 +172,13 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             &Seed::new(seed),
             real_tools(arguments, &target)?,
         );
+    }
+    if let Some(folder) = &arguments.scenes {
+        let (folder, seed) = (folder.as_deref(), Seed::new(seed));
+        return match arguments.wrong_keys {
+            Some(tests) => scenes::wrong_keys(folder, &seed, tests),
+            None => scenes::tables(folder, &seed),
+        };
     }
     if arguments.surface {
         let (models, _) = models::all(arguments.models.as_deref())?;

@@ -1,19 +1,18 @@
 //! Files of one's own: what marking them does to each of their parts, and what the usual steps of a web pipeline leave of the mark.
 
+use crate::opened::{self, Opened};
 use crate::real::Tool;
 use crate::seed::Seed;
 use meshmark::internals::attack::{Step, step};
-use meshmark::internals::document::Document;
 use meshmark::internals::geometry::Deformation;
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    EmbedOptions, EmbedReport, Error, Files, Key, Model, SceneError, Strength, Verdict, detect,
-    embed, file_names,
+    EmbedOptions, EmbedReport, Error, Key, Model, SceneError, Strength, Verdict, detect, embed,
 };
 use rayon::prelude::*;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Bits of the grid that each primitive gets in its own box, as Draco's encoders in glTF-Transform have it.
@@ -51,9 +50,7 @@ pub fn table(
     seed: &Seed,
     tools: Vec<Tool>,
 ) -> Result<String, String> {
-    let mut paths = Vec::new();
-    collect(folder, &mut paths)?;
-    paths.sort();
+    let paths = opened::paths(folder)?;
     let attacks = ["glTF quantize 14 bits", "simplify 50 %"].map(|name| step(name).ok_or(name));
     let mut columns = vec![Column::Joined, Column::Grids];
     for attack in attacks {
@@ -142,43 +139,6 @@ fn on_grid(mesh: &Mesh) -> Mesh {
     )
 }
 
-/// A model with its buffers.
-struct Opened {
-    bytes: Vec<u8>,
-    files: Files,
-}
-
-impl Opened {
-    fn new(path: &Path) -> Result<Opened, String> {
-        let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-        let mut files = Files::new();
-        for name in file_names(&bytes).map_err(|error| error.code().to_owned())? {
-            let buffer = std::fs::read(path.with_file_name(&name));
-            files.insert(name, buffer.map_err(|error| error.to_string())?);
-        }
-        Ok(Opened { bytes, files })
-    }
-
-    fn document(&self) -> Result<Document, String> {
-        Document::read(&self.bytes, &self.files).map_err(|error| error.code().to_owned())
-    }
-
-    fn mesh(&self) -> Result<Mesh, String> {
-        let scene = Scene::gather(&self.document()?).map_err(|error| error.code().to_owned())?;
-        Ok(scene.mesh)
-    }
-
-    /// What its nodes show, rounded to single precision in world space.
-    fn pieces(&self) -> Result<Vec<Mesh>, String> {
-        let pieces = Scene::pieces(&self.document()?).map_err(|error| error.code().to_owned())?;
-        let round = |piece: Mesh| {
-            let positions = piece.positions.iter();
-            piece.with_positions(positions.map(|p| p.as_vec3().as_dvec3()).collect())
-        };
-        Ok(pieces.into_iter().map(round).collect())
-    }
-}
-
 /// A file's class, which is what its mark holds, and the cells behind it; the code of what stopped it, if it cannot be marked.
 fn line(
     path: &Path,
@@ -264,18 +224,4 @@ fn found(bytes: &[u8], key: &Key, report: &EmbedReport) -> String {
         Ok(answer) if answer.number != report.number => "another".to_owned(),
         Ok(answer) => format!("{:.0}", answer.details().ln_p),
     }
-}
-
-/// Every .glb and .gltf in a folder and its folders.
-fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), String> {
-    let entries = std::fs::read_dir(folder);
-    for entry in entries.map_err(|error| format!("{}: {error}", folder.display()))? {
-        let path = entry.map_err(|error| error.to_string())?.path();
-        if path.is_dir() {
-            collect(&path, paths)?;
-        } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
-            paths.push(path);
-        }
-    }
-    Ok(())
 }

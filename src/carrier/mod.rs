@@ -350,8 +350,9 @@ pub struct Host<'a> {
     pub share: f64,
     /// Whether to stay below that limit where the surface is too smooth to hide it.
     pub hidden: bool,
-    /// Whether another carrier's mark is in the mesh already.
-    pub on_top: bool,
+    /// Where another carrier's mark is in the mesh already: the limit of the RMS displacement about each vertex, in scene units. It follows
+    /// the size of what that mark lies in, object by object.
+    pub on_top: Option<&'a [f64]>,
 }
 
 /// A mark in a host.
@@ -415,6 +416,14 @@ impl Prepared {
         match self {
             Prepared::Solid(_) => Carrier::Solid,
             Prepared::Ring(_) => Carrier::Ring,
+        }
+    }
+
+    /// Whether the mark is in objects of a scene, each in its own frame.
+    pub fn is_in_objects(&self) -> bool {
+        match self {
+            Prepared::Solid(solid) => solid.is_in_objects(),
+            Prepared::Ring(_) => false,
         }
     }
 

@@ -20,6 +20,9 @@ const MOST_PARTS: usize = 512;
 /// Boxes touch where they are nearer to each other than this part of the smaller one's diagonal.
 const TOUCH: f64 = 0.02;
 
+/// Parts of an object that may have been put there, those of the largest areas: the rest of the object is read without each of them.
+const LEFT_OUT: usize = 6;
+
 /// A part that is thinner than this part of its diagonal, and wider than the next, is a sheet: a floor, a wall, a terrain. It is no
 /// object with what stands on it.
 const THIN: f64 = 0.1;
@@ -34,6 +37,8 @@ pub struct Pieces {
     pub objects: Vec<Piece>,
     /// What hangs together by edges of two triangles, where that is no object itself.
     pub patches: Vec<Piece>,
+    /// Objects of three parts and more without one of them: what stands too near a model of several parts, or is hidden in it.
+    pub rests: Vec<Piece>,
 }
 
 impl Pieces {
@@ -55,10 +60,24 @@ impl Pieces {
             patches_of
         };
         let patches = objects.iter().flat_map(patches_of);
+        let rests = objects
+            .iter()
+            .flat_map(|object| rests_of(object, &parts, mesh));
         Pieces {
+            rests: largest(rests, mesh),
             patches: largest(patches, mesh),
             objects: largest(objects.iter().map(|object| joined(object, &parts)), mesh),
         }
+    }
+
+    /// All of them, as they are read.
+    pub fn in_order(self) -> impl Iterator<Item = Piece> {
+        let Pieces {
+            objects,
+            patches,
+            rests,
+        } = self;
+        objects.into_iter().chain(patches).chain(rests)
     }
 
     /// The objects alone that stay what they are where parts lie somewhat nearer to each other or farther apart, or have fewer
@@ -79,6 +98,28 @@ type Part = Vec<u32>;
 fn joined(object: &[u32], parts: &[Part]) -> Part {
     let triangles = object.iter().flat_map(|&part| &parts[part as usize]);
     triangles.copied().collect()
+}
+
+/// An object without each of its largest parts. Areas stay where triangles are made fewer.
+fn rests_of(object: &[u32], parts: &[Part], mesh: &Mesh) -> Vec<Part> {
+    if object.len() < 3 {
+        return Vec::new();
+    }
+    let area = |part: &u32| {
+        let part = &parts[*part as usize];
+        let twice = |&number: &u32| {
+            let [a, b, c] = mesh.corners(mesh.triangles[number as usize]);
+            (b - a).cross(c - a).length()
+        };
+        part.iter().map(twice).sum::<f64>()
+    };
+    let mut by_area: Vec<(f64, u32)> = object.iter().map(|part| (area(part), *part)).collect();
+    by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let rest = |&(_, left_out): &(f64, u32)| {
+        let others = object.iter().copied().filter(|&part| part != left_out);
+        joined(&others.collect::<Vec<u32>>(), parts)
+    };
+    by_area.iter().take(LEFT_OUT).map(rest).collect()
 }
 
 /// Those that have enough triangles and are not the whole mesh.

@@ -48,23 +48,22 @@ impl Scene {
             .collect()
     }
 
-    /// What [`gather`](Self::gather) gathers, before it is welded: a mesh for each position accessor that a node shows, in world space.
+    /// What [`gather`](Self::gather) gathers, before it is welded: a mesh for each position accessor that a node shows, in world space, with
+    /// the node's index.
     ///
     /// # Errors
     ///
     /// As [`gather`](Self::gather).
-    pub fn pieces(document: &Document) -> Result<Vec<Mesh>, SceneError> {
+    pub fn pieces(document: &Document) -> Result<Vec<(usize, Mesh)>, SceneError> {
         let gathering = Gathering::of(document)?;
-        let mut pieces: Vec<Mesh> = gathering
-            .worlds
-            .into_iter()
-            .map(|positions| Mesh {
-                positions,
-                triangles: Vec::new(),
-            })
-            .collect();
+        let nodes = gathering.placements.iter().map(|placement| placement.node);
+        let meshes = gathering.worlds.into_iter().map(|positions| Mesh {
+            positions,
+            triangles: Vec::new(),
+        });
+        let mut pieces: Vec<(usize, Mesh)> = nodes.zip(meshes).collect();
         for (placement, triangle) in gathering.triangles {
-            if let Some(piece) = pieces.get_mut(placement as usize) {
+            if let Some((_, piece)) = pieces.get_mut(placement as usize) {
                 piece.triangles.push(triangle);
             }
         }

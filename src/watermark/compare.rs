@@ -198,7 +198,7 @@ pub(super) fn with_host<T>(
         rms_rel: options.strength.rms_rel(),
         hidden: options.strength.is_hidden(),
         share: 1.0,
-        on_top: false,
+        on_top: None,
     }))
 }
 

@@ -250,7 +250,7 @@ impl Place {
     fn new(scene: Scene, used: &[Used], key: &Key, options: &EmbedOptions) -> Result<Place, Error> {
         let parts = scene.parts();
         let leeway = Leeway::new(&scene.mesh, &parts, options.bounds()?).into_owned();
-        let own = host(&scene, &scene.mesh, &leeway, options);
+        let own = host(&scene, &scene.mesh, &leeway, None, options);
         let carriers = used.iter();
         let carriers = carriers
             .filter_map(|used| used.carrier.prepare(&own, key, &used.chosen))

@@ -3,7 +3,7 @@
 use super::{EmbedOptions, Error, Model};
 use crate::carrier::{Carrier, CarrierError, Chosen, Host, Mark, Prepared};
 use crate::document::Document;
-use crate::geometry::{Distortion, Leeway, Parts, cuts};
+use crate::geometry::{Distortion, Leeway, Parts, Pieces, cuts, diagonal};
 use crate::mesh::{Admissible, Mesh};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -55,8 +55,11 @@ pub(super) fn displacement_again(
     is_thorough: bool,
 ) -> Vec<DVec3> {
     let mut mesh = scene.mesh.clone();
+    let in_objects = prepared.iter().any(Prepared::is_in_objects);
     for carrier in prepared {
-        let displacement = carrier.again(&host(scene, &mesh, leeway, options), mark, is_thorough);
+        let limits = limits_on_top(scene, &mesh, in_objects, options);
+        let host = host(scene, &mesh, leeway, limits.as_deref(), options);
+        let displacement = carrier.again(&host, mark, is_thorough);
         mesh.displace(&displacement);
     }
     within_limit(scene, &mesh, options)
@@ -80,26 +83,50 @@ pub(super) fn host<'a>(
     scene: &'a Scene,
     mesh: &'a Mesh,
     leeway: &'a Leeway,
+    on_top: Option<&'a [f64]>,
     options: &EmbedOptions,
 ) -> Host<'a> {
-    let limit = options.strength.rms_rel();
-    let is_first = *mesh == scene.mesh;
-    let rms_rel = if is_first {
-        limit
-    } else {
-        // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
-        let below = Distortion::between(&scene.mesh.positions, &mesh.positions).rms_rel;
-        (below * limit).sqrt() * Carrier::SHARE_ON_TOP
-    };
     Host {
         mesh,
         leeway,
         admissible: &scene.admissible,
-        rms_rel,
+        rms_rel: options.strength.rms_rel(),
         share: 1.0,
         hidden: options.strength.is_hidden(),
-        on_top: !is_first,
+        on_top,
     }
+}
+
+/// What RING may do about each vertex on top of SOLID, in scene units; none where nothing is in the mesh yet. Where SOLID is in objects, each
+/// in its own size, RING keeps to that size too: of the scene's it would take the mark of the small ones.
+fn limits_on_top(
+    scene: &Scene,
+    mesh: &Mesh,
+    in_objects: bool,
+    options: &EmbedOptions,
+) -> Option<Vec<f64>> {
+    if *mesh == scene.mesh {
+        return None;
+    }
+    let limit = |before: &[DVec3], after: &[DVec3]| {
+        // Where SOLID stays below the limit to be hidden, RING follows halfway: of cropped copies it is all that is left.
+        let below = Distortion::between(before, after).rms_rel;
+        (below * options.strength.rms_rel()).sqrt() * Carrier::SHARE_ON_TOP * diagonal(after)
+    };
+    let whole = limit(&scene.mesh.positions, &mesh.positions);
+    let mut limits = vec![whole; mesh.positions.len()];
+    let objects = in_objects.then(|| Pieces::stable_objects(&scene.mesh));
+    for object in objects.into_iter().flatten() {
+        let before = scene.mesh.part(object.iter().copied()).positions;
+        let after = mesh.part(object.iter().copied()).positions;
+        let own = limit(&before, &after);
+        // What SOLID left as it was has nothing to lose.
+        if own > 0.0 {
+            let vertices = object.iter().flatten();
+            vertices.for_each(|&vertex| limits[vertex as usize] = own.min(whole));
+        }
+    }
+    Some(limits)
 }
 
 /// The host's mesh with the mark in it, in every carrier that it suits; with one beside SOLID, which shares the limit with it.
@@ -124,7 +151,9 @@ fn displaced(
             continue;
         }
         let chosen: Vec<Chosen> = used.iter().flat_map(|used| used.chosen.clone()).collect();
-        let mut host = host(scene, &mesh, leeway, options);
+        let in_objects = chosen.iter().any(|frame| frame.object.is_some());
+        let limits = limits_on_top(scene, &mesh, in_objects, options);
+        let mut host = host(scene, &mesh, leeway, limits.as_deref(), options);
         if is_beside || used.is_empty() && beside.is_some() {
             host.rms_rel = options.strength.rms_rel();
             host.share = Carrier::SHARE_BESIDE;

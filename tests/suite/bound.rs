@@ -263,12 +263,9 @@ fn hold_mesh(name: &str, mesh: &Mesh, keys: u64) {
 
 /// Keys against a mesh and each of its pieces alone, as they are.
 fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
-    let Pieces { objects, patches } = Pieces::of(mesh);
-    assert!(!patches.is_empty(), "{name}");
-    let pieces = objects
-        .into_iter()
-        .chain(patches)
-        .map(|piece| mesh.part(piece));
+    let found = Pieces::of(mesh);
+    assert!(!found.patches.is_empty(), "{name}");
+    let pieces = found.in_order().map(|piece| mesh.part(piece));
     let all = std::iter::once(mesh.clone()).chain(pieces);
     let plain = all.flat_map(|piece| solid::Surfaces::new(&piece).plain());
     hold_surfaces(name, &plain.collect(), keys);

@@ -72,6 +72,6 @@ fn golden_terrain() {
 fn golden_gallery() {
     check(
         &gallery(Packing::Glb),
-        ["98c4293e50a09b79", "25cf7ada7e478fbf", "6e116f817baf325f"],
+        ["98c4293e50a09b79", "96ff40a3482e8077", "bef9c11fc23e1186"],
     );
 }

@@ -235,7 +235,7 @@ fn informed_bound_holds_for_wrong_keys() {
         rms_rel: 0.0004,
         hidden: true,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let surface = Original::new(&original);
     let views = Views::new(&original);

@@ -22,7 +22,7 @@ fn embedded(mesh: &Mesh, owner: u8) -> Option<Embedded> {
         rms_rel: RMS_REL,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     embed(&host, &key(owner), &[], &mut ignore).unwrap()
 }

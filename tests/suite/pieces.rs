@@ -73,7 +73,7 @@ fn pieces_are_what_touches_and_its_patches() {
 #[wasm_bindgen_test(unsupported = test)]
 fn pieces_of_one_object_are_none() {
     let pieces = Pieces::of(&shapes::asteroid(24, 36));
-    assert!(pieces.objects.is_empty() && pieces.patches.is_empty());
+    assert_eq!(pieces.in_order().count(), 0);
 }
 
 /// Objects that touch only just are not told apart for certain.
@@ -136,6 +136,23 @@ fn pieces_hold_the_mark_of_a_model_among_others() {
     }
 }
 
+/// A model of several parts among which something was hidden, and beside which something stands: their boxes touch, so that all is one
+/// object, and the model is what is left of it.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_hold_the_mark_of_a_model_of_parts_with_another_in_it() {
+    let body = shapes::asteroid(40, 60);
+    let hat = moved(&shapes::asteroid(24, 36), 0.4, DVec3::Z * 1.05);
+    let model = marked(&Mesh::joined([body, hat]));
+    let hidden = moved(&shapes::cad_part(), 0.25, DVec3::new(0.1, 0.0, 0.05));
+    let near = moved(&shapes::torus_knot(60, 12), 0.5, DVec3::X * 1.7);
+    for (name, other) in [("hidden", hidden), ("near", near)] {
+        let suspect = Mesh::joined([model.clone(), other]);
+        assert!(Pieces::of(&suspect).objects.is_empty(), "{name}: parted");
+        let found = found(&similarity(&simplify(&suspect, 0.5), 5));
+        assert!(found.is_some_and(|piece| piece.is_some()), "{name}");
+    }
+}
+
 /// A found piece is called what its node is, or the node above it.
 #[wasm_bindgen_test(unsupported = test)]
 fn pieces_that_are_found_are_named() {
@@ -177,6 +194,18 @@ fn pieces_hold_the_mark_of_their_scene() {
     }
 }
 
+/// What RING does to an object follows the object's size, as what SOLID did: a pebble far from a rock keeps SOLID.
+#[wasm_bindgen_test(unsupported = test)]
+fn pieces_that_are_small_keep_their_mark_beneath_ring() {
+    let pebble = moved(&shapes::asteroid(36, 54), 0.06, DVec3::X * 4.0);
+    let scene = marked(&Mesh::joined([shapes::asteroid(40, 60), pebble]));
+    let objects = Pieces::of(&scene).objects;
+    assert_eq!(objects.len(), 2);
+    for object in objects {
+        assert_eq!(found(&similarity(&scene.part(object), 8)), Some(None));
+    }
+}
+
 /// An object and its instance, far apart, are marked once and move as one.
 #[wasm_bindgen_test(unsupported = test)]
 fn pieces_that_are_instances_share_their_mark() {
@@ -197,7 +226,7 @@ fn pieces_that_are_instances_share_their_mark() {
         rms_rel: Strength::STRONG.rms_rel(),
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let message = Checked::new(&key(1)).message(payload());
     let mark = Mark {

@@ -22,7 +22,7 @@ fn marked(mesh: &Mesh, admissible: &Admissible) -> Vec<DVec3> {
         rms_rel: 0.0004,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let mark = Mark {
         key: &key(1),
@@ -212,7 +212,7 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
         rms_rel: 0.0008,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let mark = Mark {
         key: &key(1),

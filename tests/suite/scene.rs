@@ -216,7 +216,7 @@ fn places(builder: &GltfBuilder) -> Vec<[f64; 3]> {
     let pieces = Scene::pieces(&read(&builder.build())).unwrap();
     pieces
         .iter()
-        .map(|piece| piece.positions[0].to_array())
+        .map(|(_, piece)| piece.positions[0].to_array())
         .collect()
 }
 
@@ -339,8 +339,8 @@ fn scene_counts_instances() {
         ("_ID", "VEC3", &[]),
     ]);
     let pieces = Scene::pieces(&read(&builder.build())).unwrap();
-    assert_eq!(pieces[0].positions[1], DVec3::new(-2.0, 0.0, 1.0));
-    assert_eq!(pieces[1].positions[1], DVec3::new(1.0, 0.0, 1.0));
+    assert_eq!(pieces[0].1.positions[1], DVec3::new(-2.0, 0.0, 1.0));
+    assert_eq!(pieces[1].1.positions[1], DVec3::new(1.0, 0.0, 1.0));
     // What places nothing leaves the mesh where it is.
     assert_eq!(
         places(&instanced(&[("_ID", "VEC3", moved)])),

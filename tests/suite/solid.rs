@@ -9,7 +9,7 @@ use meshmark::internals::carrier::solid::{Measurement, Surface, Surfaces};
 use meshmark::internals::carrier::{Carrier, Host, Mark, StoredError};
 use meshmark::internals::code::Codeword;
 use meshmark::internals::detection::Statistic;
-use meshmark::internals::geometry::{Distortion, diagonal};
+use meshmark::internals::geometry::{Distortion, Pose, diagonal};
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::progress::ignore;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -34,7 +34,7 @@ fn marked_at(mesh: &Mesh, owner: u8, rms_rel: f64) -> Mesh {
             rms_rel,
             hidden: false,
             share: 1.0,
-            on_top: false,
+            on_top: None,
         },
         owner,
     )
@@ -143,7 +143,7 @@ fn solid_hides_in_rough_surfaces() {
         rms_rel: 0.0004,
         hidden: true,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let result = marked_as(&host, 1);
     let rms = |side: fn(f64) -> bool| {
@@ -254,7 +254,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
         rms_rel: 0.0008,
         hidden: false,
         share: 1.0,
-        on_top: false,
+        on_top: None,
     };
     let mark = Mark {
         key: &key(1),
@@ -364,4 +364,20 @@ fn solid_refuses_forged_measurements() {
         impossible(&few(2, &[first, &rest, same, &rest])),
         "two pieces in one cell"
     );
+}
+
+/// A long rod has little area in its own frame: it is marked at the finest pitch.
+#[wasm_bindgen_test(unsupported = test)]
+fn solid_marks_long_rods() {
+    let rock = shapes::asteroid(24, 36);
+    let drawn = |thick: f64| {
+        let by = DVec3::new(1.2 * thick, thick, 1.0);
+        rock.with_positions(rock.positions.iter().map(|p| *p * by).collect())
+    };
+    let area = |mesh: &Mesh| mesh.area() / Pose::of(mesh).unwrap().size.powi(2);
+    let mut rods = (1..100).map(|step| drawn(0.002 * f64::from(step)));
+    let rod = rods.find(|mesh| area(mesh) > 1.87).unwrap();
+    assert!(area(&rod) < 2.0);
+    let found = exponent(&similarity(&marked(&rod, 1), 3), 1);
+    assert!(found > 90.0, "{found}");
 }

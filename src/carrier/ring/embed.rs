@@ -16,6 +16,7 @@ use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress, Stage, ignore, step};
 use glam::DVec3;
+use std::borrow::Cow;
 
 const ROUNDS: usize = 6;
 /// Rounds of a further message.
@@ -90,7 +91,7 @@ impl Prepared {
             &instances,
         );
         // Addresses by position survive nothing that SOLID does not.
-        let adds_nothing = host.on_top && matches!(kind, AddressKind::Position(_));
+        let adds_nothing = host.on_top.is_some() && matches!(kind, AddressKind::Position(_));
         let needed = NEEDS.presence as usize * SHARE as usize;
         if available < needed || adds_nothing {
             return Err(CarrierError::TooFewAddresses {
@@ -141,7 +142,10 @@ impl Prepared {
         let features = Features::new(positions, neighbourhoods);
         let normals = vertex_normals(host.mesh);
         let pose = Pose::of(host.mesh);
-        let limit = host.rms_rel * diagonal(positions);
+        let limits = match host.on_top {
+            Some(limits) => Cow::Borrowed(limits),
+            None => Cow::Owned(vec![host.rms_rel * diagonal(positions); positions.len()]),
+        };
         let ownership = Ownership::of(mark.key);
         let linear = Linearization::new(neighbourhoods, features, &normals, &host.admissible.fixed);
         let mut displacement = vec![DVec3::ZERO; positions.len()];
@@ -172,13 +176,13 @@ impl Prepared {
                 Some(linear.goal(vertex, now.offsets[vertex], &owned, mark, &along))
             });
             let solution = linear.solve(&goals.collect::<Vec<_>>());
-            displacement = solution
-                .iter()
-                .zip(&normals)
-                .map(|(length, normal)| *normal * length.clamp(-CLAMP * limit, CLAMP * limit))
+            displacement = (solution.iter().zip(&normals).zip(&*limits))
+                .map(|((length, normal), limit)| {
+                    *normal * length.clamp(-CLAMP * limit, CLAMP * limit)
+                })
                 .collect();
             host.admissible.project(&mut displacement);
-            scale_to_rms(&mut displacement, limit);
+            scale_to_rms(&mut displacement, &limits);
             host.leeway
                 .keep(positions, &mut displacement, host.admissible);
         }
@@ -208,10 +212,15 @@ fn by_position(mesh: &Mesh, host: Option<&Pose>, turn: Turn) -> Vec<u64> {
         .collect()
 }
 
-fn scale_to_rms(displacement: &mut [DVec3], limit: f64) {
-    let mean_square =
-        displacement.iter().map(|d| d.length_squared()).sum::<f64>() / displacement.len() as f64;
-    let scale = limit / mean_square.sqrt();
+/// Makes all shorter alike where the RMS, each vertex measured by its limit, is beyond it.
+fn scale_to_rms(displacement: &mut [DVec3], limits: &[f64]) {
+    let largest = limits.iter().copied().fold(0.0, f64::max);
+    let square = |(d, limit): (&DVec3, &f64)| {
+        let times = largest / limit;
+        d.length_squared() * (times * times)
+    };
+    let squares: f64 = displacement.iter().zip(limits).map(square).sum();
+    let scale = largest / (squares / displacement.len() as f64).sqrt();
     if scale < 1.0 {
         displacement.iter_mut().for_each(|d| *d *= scale);
     }

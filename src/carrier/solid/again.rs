@@ -3,7 +3,7 @@
 use super::embed::ground;
 use super::lattice::{Lattice, Placement};
 use super::objects::{Chosen, Marked, vertices_of};
-use super::pitch::{AREAS_TO_EMBED, pitches};
+use super::pitch::pitches_to_embed;
 use super::problem::Problem;
 use super::rounds::{Choice, Ground, Rounds, dither};
 use super::window::Window;
@@ -76,6 +76,11 @@ impl Prepared {
         Prepared { frames }
     }
 
+    /// Whether it is objects that are marked.
+    pub fn is_in_objects(&self) -> bool {
+        self.frames.iter().any(|frame| frame.object.is_some())
+    }
+
     /// The displacement of all vertices of the same host that gives it a mark.
     pub fn again(&self, host: &Host, mark: &Mark, is_thorough: bool) -> Vec<DVec3> {
         let lattice = Lattice::of(mark.key);
@@ -109,7 +114,7 @@ impl Frame {
         let ground = ground(host)?;
         let placement = lattice.placed(DMat3::IDENTITY, choice.pitch);
         // A plan may be anybody's bytes: a finer lattice has as many windows as it likes.
-        let is_fit = pitches(ground.area(), AREAS_TO_EMBED).any(|pitch| pitch == choice.pitch);
+        let is_fit = pitches_to_embed(ground.area()).any(|pitch| pitch == choice.pitch);
         if !is_fit {
             return None;
         }

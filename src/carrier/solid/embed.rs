@@ -2,7 +2,7 @@
 
 use super::frame::is_determined;
 use super::lattice::Lattice;
-use super::pitch::{AREAS_TO_EMBED, pitches};
+use super::pitch::pitches_to_embed;
 use super::quantizer::steps_for;
 use super::rounds::{Attempt, Choice, Ground, Rounds, dither};
 use crate::carrier::{Carrier, CarrierError, Host, Mark, Needs};
@@ -39,7 +39,8 @@ const NEEDS_SCANNED: Needs = Needs {
 const HOPEFUL: f64 = 0.25;
 const BEGUN: f64 = 1.0 / 32.0;
 
-/// Steps smaller than the strength's own are tried until the exponent is so many times what a sturdy mark needs, so many in all.
+/// Steps smaller than the strength's own are tried until the exponent is so many times what a sturdy mark needs, so many in all; and still
+/// smaller ones until the mark is sturdy: where parts and triangles leave vertices less room than the strength, they hold more.
 const ENOUGH: f64 = 1.2;
 const STEPS_TRIED: usize = 4;
 
@@ -71,7 +72,7 @@ pub fn embed_in_frame(
     }
     let ground = ground(host).ok_or_else(|| none(0))?;
     step(progress, Stage::Embed, 0.0)?;
-    let candidates: Vec<f64> = pitches(ground.area(), AREAS_TO_EMBED).collect();
+    let candidates: Vec<f64> = pitches_to_embed(ground.area()).collect();
     let whole = host.share * host.rms_rel * diagonal(&ground.mesh.positions);
     let needs = match is_determined(&ground.pose) {
         true => NEEDS,
@@ -83,6 +84,7 @@ pub fn embed_in_frame(
         mark,
         ground: &ground,
         enough: ENOUGH * needs.sturdy,
+        sturdy: needs.sturdy,
     };
     let mut best = Attempt::default();
     // What is seen is better than no mark: a hidden one gets more of the limit until there is one.
@@ -132,6 +134,8 @@ struct Embedder<'a> {
     ground: &'a Ground,
     /// An exponent that needs no further attempt.
     enough: f64,
+    /// What a sturdy mark needs.
+    sturdy: f64,
 }
 
 impl Embedder<'_> {
@@ -180,7 +184,10 @@ impl Embedder<'_> {
         };
         let steps = steps_for(choice.limit / diagonal(&self.ground.mesh.positions));
         let mut multipliers = vec![0.0; active.len()];
-        for &step in steps.iter().take(STEPS_TRIED) {
+        for (number, &step) in steps.iter().enumerate() {
+            if number >= STEPS_TRIED && best.exponent >= self.sturdy {
+                break;
+            }
             let choice = Choice { step, ..choice };
             let begun = BEGUN * NEEDS.sturdy;
             let attempt = rounds.attempt(choice, begun, &mut multipliers, progress)?;

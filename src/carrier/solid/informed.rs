@@ -10,7 +10,7 @@ use super::embed::CLAMPS;
 use super::frame::has_axes;
 use super::freedom::{freedoms, typical};
 use super::lattice::{Lattice, Placement, RADIUS};
-use super::pitch::{AREAS, AREAS_TO_EMBED, pitches};
+use super::pitch::{AREAS, pitches, pitches_to_embed};
 use super::problem::Problem;
 use super::quantizer::{STEPS, phase};
 use super::window::{Window, windows};
@@ -250,7 +250,7 @@ impl Frame {
     /// The pitches that an embedder may have used, and the one that it gathered clusters for.
     pub fn pitches(&self) -> (Vec<f64>, f64) {
         let area = self.mesh.area() / (self.pose.size * self.pose.size);
-        let candidates = pitches(area, AREAS_TO_EMBED).collect();
+        let candidates = pitches_to_embed(area).collect();
         let finest = pitches(area, AREAS).fold(f64::INFINITY, f64::min);
         (candidates, finest)
     }
@@ -430,7 +430,7 @@ mod tests {
             rms_rel: 0.0004,
             hidden: true,
             share: 1.0,
-            on_top: false,
+            on_top: None,
         };
         let observations: Vec<Observation> = scattered(&mesh, 2000, 1)
             .iter()

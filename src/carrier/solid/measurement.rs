@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Progress};
 use std::borrow::Cow;
 
-/// Pieces that are read alone, at most: objects first, then patches, those of most triangles.
+/// Pieces that are read alone, at most: objects first, then patches, then rests, those of most triangles.
 const MOST_PIECES: usize = 16;
 
 /// Key-free measurement of a mesh: all its surfaces, then those of each of its pieces. Each begins with what it is.
@@ -167,20 +167,23 @@ impl Suspect {
 
 /// The triangles of a piece of a mesh, by its number in readings: 1 is the first.
 pub fn piece(mesh: &Mesh, number: usize) -> Option<Piece> {
-    let Pieces { objects, patches } = Pieces::of(mesh);
-    let pieces = objects.into_iter().chain(patches).take(MOST_PIECES);
+    let pieces = Pieces::of(mesh).in_order().take(MOST_PIECES);
     let is_read = |piece: &Piece| !Surfaces::new(&mesh.part(piece.clone())).is_empty();
     pieces.filter(is_read).nth(number.checked_sub(1)?)
 }
 
 /// What is read alone of a mesh.
 fn pieces_of(mesh: &Mesh) -> impl Iterator<Item = Surfaces> {
-    let Pieces { objects, patches } = Pieces::of(mesh);
+    let Pieces {
+        objects,
+        patches,
+        rests,
+    } = Pieces::of(mesh);
     let of = |piece: Piece| Surfaces::new(&mesh.part(piece));
-    // A patch is read alone for the sake of what was put beside it, and that smooths nothing.
-    let of_patch = move |patch| of(patch).plain();
+    // A patch or a rest is read alone for the sake of what was put beside it, and that smooths nothing.
+    let plain = move |piece| of(piece).plain();
     let objects = objects.into_iter().map(of);
     objects
-        .chain(patches.into_iter().map(of_patch))
+        .chain(patches.into_iter().chain(rests).map(plain))
         .take(MOST_PIECES)
 }

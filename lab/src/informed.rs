@@ -62,6 +62,17 @@ impl Row<'_> {
 
 /// The rows: what is done to the marked mesh.
 const ROWS: [(&str, Make); 19] = [
+    ("posed 30 degrees, simplify 50 %", |_, marked, seed| {
+        by_name(marked, &["posed 30 degrees", "simplify 50 %"], seed)
+    }),
+    (
+        "two pieces of it beside a third thing, simplify 50 %",
+        |_, marked, _| Ok(kit(&simplify(marked, 0.5))),
+    ),
+    (
+        "unmarked, posed 30 degrees, simplify 50 %",
+        |case, _, seed| by_name(&case.host, &["posed 30 degrees", "simplify 50 %"], seed),
+    ),
     ("none", |_, marked, _| Ok(marked.clone())),
     (
         "crop 30 %, simplify 50 %, glTF quantize 10 bits",
@@ -108,18 +119,7 @@ const ROWS: [(&str, Make); 19] = [
     ("resampled distance 0.8 %", |_, marked, seed| {
         by_name(marked, &["resampled distance 0.8 %"], seed)
     }),
-    ("posed 30 degrees, simplify 50 %", |_, marked, seed| {
-        by_name(marked, &["posed 30 degrees", "simplify 50 %"], seed)
-    }),
-    (
-        "two pieces of it beside a third thing, simplify 50 %",
-        |_, marked, _| Ok(kit(&simplify(marked, 0.5))),
-    ),
     ("unmarked", |case, _, _| Ok(case.host.clone())),
-    (
-        "unmarked, posed 30 degrees, simplify 50 %",
-        |case, _, seed| by_name(&case.host, &["posed 30 degrees", "simplify 50 %"], seed),
-    ),
     ("wrong key", |case, _, _| case.by_another(1)),
 ];
 

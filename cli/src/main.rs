@@ -108,7 +108,7 @@ mod tests {
             .map(|text| text.lines().filter(|line| line.starts_with("meshmark ")));
         let mut shown = BTreeSet::new();
         for line in lines.into_iter().flatten() {
-            let words = shlex::split(line).unwrap();
+            let words = shlex::split(line).expect("quotes that are closed");
             if let Err(error) = Arguments::try_parse_from(&words) {
                 panic!("{line}\n{error}");
             }

@@ -21,6 +21,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
+use std::time::Instant;
 
 /// Objects of fewer vertices are not taken out, and no more than so many of a scene, those of the most vertices.
 const FEWEST_VERTICES: usize = 200;
@@ -186,7 +187,7 @@ struct Cell {
 fn print(setting: &Setting, strength: (&str, Strength), seed: &Seed) -> Result<(), String> {
     let purpose = format!("{}, {}", setting.name, strength.0);
     let (key, payload) = (seed.key(&purpose, 0), seed.payload(&purpose));
-    let start = std::time::Instant::now();
+    let start = Instant::now();
     let scene = match marked(&setting.file, payload, &key, strength.1) {
         Ok(scene) => scene,
         Err(code) => {
@@ -446,5 +447,42 @@ pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
             .par_iter()
             .try_for_each(|setting| print(setting, strength, seed))?;
     }
+    if folder.is_none() {
+        print_costs(seed)?;
+    }
     Ok(String::new())
+}
+
+/// Prints how long a scene of a hundred parts takes beside one part of its size, at balanced.
+fn print_costs(seed: &Seed) -> Result<(), String> {
+    let part = shapes::asteroid(20, 25);
+    let place = |number: u32| DVec3::new((number % 10).into(), (number / 10).into(), 0.0) * 3.0;
+    let parts = (0..100).map(|number| {
+        let by = place(number);
+        part.with_positions(part.positions.iter().map(|p| *p + by).collect())
+    });
+    let (key, payload) = (seed.key("costs", 0), seed.payload("costs"));
+    println!("\n| vertices | embed, s | found, s | not found, s |\n|---|--:|--:|--:|");
+    for (name, mesh) in [
+        ("one part", shapes::asteroid(200, 250)),
+        ("a hundred parts", Mesh::joined(parts)),
+    ] {
+        let (bytes, files) = (to_glb(&mesh), Files::new());
+        let host = Opened { bytes, files };
+        let start = Instant::now();
+        let marked = marked(&host, payload, &key, Strength::BALANCED)?;
+        let embedded = start.elapsed().as_secs_f64();
+        let seconds = |model: &Opened| -> Result<f64, String> {
+            let start = Instant::now();
+            detect(&model.bytes, &key, None).map_err(|error| error.to_string())?;
+            Ok(start.elapsed().as_secs_f64())
+        };
+        println!(
+            "| {name}, {} | {embedded:.1} | {:.1} | {:.1} |",
+            mesh.positions.len(),
+            seconds(&marked)?,
+            seconds(&host)?
+        );
+    }
+    Ok(())
 }

@@ -40,7 +40,7 @@ impl Options {
     }
 
     /// A choice of yes or no; no where it was left out.
-    #[cfg(any(feature = "wasm-marks", feature = "wasm-informed"))]
+    #[cfg(feature = "wasm-marks")]
     pub fn is_set(&self, name: &str) -> Result<bool, JsValue> {
         let value = self.get(name);
         match value.as_bool() {
@@ -50,11 +50,7 @@ impl Options {
     }
 
     /// Who hears of progress; nobody where that was left out.
-    #[cfg(any(
-        feature = "wasm-marks",
-        feature = "wasm-study",
-        feature = "wasm-informed"
-    ))]
+    #[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
     pub fn listener(&self) -> Result<super::listener::Listener, JsValue> {
         let on_progress = self.get("onProgress");
         let function = match on_progress.is_undefined() {

@@ -374,7 +374,10 @@ fn solid_marks_long_rods() {
         let by = DVec3::new(1.2 * thick, thick, 1.0);
         rock.with_positions(rock.positions.iter().map(|p| *p * by).collect())
     };
-    let area = |mesh: &Mesh| mesh.area() / Pose::of(mesh).unwrap().size.powi(2);
+    let area = |mesh: &Mesh| {
+        let size = Pose::of(mesh).unwrap().size;
+        mesh.area() / (size * size)
+    };
     let mut rods = (1..100).map(|step| drawn(0.002 * f64::from(step)));
     let rod = rods.find(|mesh| area(mesh) > 1.87).unwrap();
     assert!(area(&rod) < 2.0);

@@ -157,7 +157,7 @@ fn informed_charges_one_payload_where_one_is_expected() {
     let kept = record(&original, &marked.report, &key(1), &options).unwrap();
     let suspect = to_glb(&similarity(&simplify(&crop(&mesh, 0.3, 3), 0.5), 4));
     let wrong = Payload::from_tag("ADA-2").unwrap();
-    let gain = Payload::BITS as f64 * std::f64::consts::LN_2 - (5.0f64 / 3.0).ln();
+    let gain = Payload::BITS as f64 * std::f64::consts::LN_2 - libm::log(5.0 / 3.0);
     let verify = |expected| {
         [
             verify_with_original(&suspect, &original, &key(1), expected).unwrap(),

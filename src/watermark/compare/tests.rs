@@ -121,7 +121,7 @@ fn informed_bound_holds_for_wrong_keys_on_what_lies_on_its_original() {
                         single.count(ln_p_of_errors(own));
                         is_heard[number] = true;
                     }
-                    if number % JUDGED == 0 {
+                    if number.is_multiple_of(JUDGED) {
                         way.ln_num_tests += ln_num_searches();
                         scales[number].hear(&way);
                     }

@@ -484,3 +484,6 @@ fn sentence(verdict: Verdict, shape: Shape) -> &'static str {
         (_, Shape::Other) => "This is another shape than the original, and your mark is not in it.",
     }
 }
+
+#[cfg(test)]
+mod tests;

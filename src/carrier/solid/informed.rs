@@ -182,6 +182,41 @@ impl Reader<'_> {
         progress: &mut dyn Progress,
         visit: &mut dyn FnMut(Way) -> bool,
     ) -> Result<(), Cancelled> {
+        self.respond(seen, progress, &mut |laid, list, responses| {
+            let way = |step| laid.way(&self.lattice, responses, step, (list, seen));
+            STEPS.into_iter().map(way).any(&mut *visit)
+        })
+    }
+
+    /// The same with what points of this key's lattice hold of other keys: responses depend on where it lies, and on nothing else of a key.
+    #[cfg(test)]
+    pub(crate) fn read_as(
+        &self,
+        seen: &[&Seen],
+        place: &Key,
+        others: &[Key],
+        visit: &mut dyn FnMut(usize, Way),
+    ) -> Result<(), Cancelled> {
+        let lattices = others.iter();
+        let lattices: Vec<Lattice> = lattices.map(|o| Lattice::of(place).holding(o)).collect();
+        let mut progress = crate::progress::ignore;
+        self.respond(seen, &mut progress, &mut |laid, list, responses| {
+            for (number, lattice) in lattices.iter().enumerate() {
+                for step in STEPS {
+                    visit(number, laid.way(lattice, responses, step, (list, seen)));
+                }
+            }
+            false
+        })
+    }
+
+    /// Calls `visit` with what is seen of every window, for every pitch, way to lie and level of noise, until it returns `true`.
+    fn respond(
+        &self,
+        seen: &[&Seen],
+        progress: &mut dyn Progress,
+        visit: &mut dyn FnMut(&Laid, usize, &[f64]) -> bool,
+    ) -> Result<(), Cancelled> {
         for (number, laid) in self.laid.iter().enumerate() {
             for (list, observe) in seen.iter().enumerate() {
                 let done = (number * seen.len() + list) as f64;
@@ -194,17 +229,8 @@ impl Reader<'_> {
                 }
                 let evidence = Evidence::new(&laid.response, &observations);
                 for noise in NOISES {
-                    let responses = evidence.responses(noise);
-                    for step in STEPS {
-                        let way = Way {
-                            places: laid.places(&self.lattice, &responses, step),
-                            ln_num_tests: laid.ln_num_ways + libm::log(seen.len() as f64),
-                            list,
-                            radius: laid.radius(),
-                        };
-                        if visit(way) {
-                            return Ok(());
-                        }
+                    if visit(laid, list, &evidence.responses(noise)) {
+                        return Ok(());
                     }
                 }
             }
@@ -217,6 +243,22 @@ impl Laid<'_> {
     /// Of the windows, in scene units.
     fn radius(&self) -> f64 {
         RADIUS * self.placement.pitch * self.frame.pose.size
+    }
+
+    /// The way of reading at a step, of one of so many ways to lie.
+    fn way(
+        &self,
+        lattice: &Lattice,
+        responses: &[f64],
+        step: f64,
+        (list, seen): (usize, &[&Seen]),
+    ) -> Way {
+        Way {
+            places: self.places(lattice, responses, step),
+            ln_num_tests: self.ln_num_ways + libm::log(seen.len() as f64),
+            list,
+            radius: self.radius(),
+        }
     }
 
     /// The windows with their errors at a step, in the frame's units.

@@ -436,6 +436,7 @@ pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
     let settings = folder.map_or_else(|| Ok(generated()), files)?;
     println!("seed {}", seed.number);
     if folder.is_none() {
+        print_costs(seed)?;
         println!("\n{}", beside(seed)?);
     }
     for strength in STRENGTHS {
@@ -446,9 +447,6 @@ pub fn tables(folder: Option<&Path>, seed: &Seed) -> Result<String, String> {
         settings
             .par_iter()
             .try_for_each(|setting| print(setting, strength, seed))?;
-    }
-    if folder.is_none() {
-        print_costs(seed)?;
     }
     Ok(String::new())
 }

@@ -272,7 +272,7 @@ fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
 }
 
 /// A commit tries so many keys on each surface, which give each a test below one tenth; `cargo xtask test --all` tries more.
-const KEYS: u64 = 100;
+const KEYS: u64 = 200;
 const ALL_KEYS: u64 = 1_000;
 
 fn a_box() -> Mesh {
@@ -309,7 +309,7 @@ fn repeated_rocks() -> Mesh {
 
 #[test]
 fn bound_holds_for_pieces() {
-    hold_pieces("repeated rocks", &repeated_rocks(), KEYS / 5);
+    hold_pieces("repeated rocks", &repeated_rocks(), KEYS / 10);
 }
 
 /// A rock whose surface is written in both directions, with a shell about it on a bridge: pieces that are nearly alike.
@@ -321,7 +321,7 @@ fn layered_rock() -> Mesh {
 
 #[test]
 fn bound_holds_for_layers() {
-    hold_pieces("a layered rock", &layered_rock(), KEYS / 5);
+    hold_pieces("a layered rock", &layered_rock(), KEYS / 10);
 }
 
 #[test]
@@ -353,7 +353,7 @@ fn hold_what_is_undone(keys: u64) {
 
 #[test]
 fn bound_holds_where_something_is_undone() {
-    hold_what_is_undone(KEYS / 5);
+    hold_what_is_undone(KEYS / 10);
 }
 
 #[test]
@@ -407,7 +407,7 @@ fn hold_charges(keys: u64) {
 
 #[test]
 fn charges_are_those_that_are_declared() {
-    hold_charges(KEYS / 5);
+    hold_charges(KEYS / 10);
 }
 
 /// A whole and its pieces share the probability: the whole has half, each of n pieces 1 / 2n.

@@ -14,6 +14,10 @@ use std::borrow::Cow;
 /// Pieces that are read alone, at most: objects first, then patches, then rests, those of most triangles.
 const MOST_PIECES: usize = 16;
 
+/// Objects of which what smoothing may have done is undone too, at most: the first. Each takes as long as a whole model. Where a scene was smoothed, the whole and these
+/// tell.
+const MOST_UNDONE: usize = 4;
+
 /// Key-free measurement of a mesh: all its surfaces, then those of each of its pieces. Each begins with what it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
@@ -181,9 +185,10 @@ fn pieces_of(mesh: &Mesh) -> impl Iterator<Item = Surfaces> {
     } = Pieces::of(mesh);
     let of = |piece: Piece| Surfaces::new(&mesh.part(piece));
     // A patch or a rest is read alone for the sake of what was put beside it, and that smooths nothing.
-    let plain = move |piece| of(piece).plain();
-    let objects = objects.into_iter().map(of);
-    objects
-        .chain(patches.into_iter().chain(rests).map(plain))
-        .take(MOST_PIECES)
+    let mut objects = objects.into_iter();
+    let undone: Vec<Piece> = objects.by_ref().take(MOST_UNDONE).collect();
+    let plain = objects.chain(patches).chain(rests);
+    let plain = plain.map(move |piece| of(piece).plain());
+    let undone = undone.into_iter().map(of);
+    undone.chain(plain).take(MOST_PIECES)
 }

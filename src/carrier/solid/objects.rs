@@ -12,6 +12,9 @@ use glam::DVec3;
 /// The share of a scene's vertices that has to be in marked objects. Where it is not, the scene is marked as one.
 const ENOUGH: f64 = 0.5;
 
+/// So many objects in a row that cannot hold a sturdy mark, and no further one is tried: each takes as long as to refuse a model, and those that follow are smaller.
+const IN_VAIN: usize = 8;
+
 /// What an embedding chose for one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
@@ -30,7 +33,9 @@ pub fn embed(
     let objects = Pieces::stable_objects(host.mesh);
     let mut scene = Marked::new(host);
     for (number, object) in (0..).zip(objects) {
-        scene.mark(number, object, mark, progress)?;
+        if scene.num_in_vain < IN_VAIN {
+            scene.mark(number, object, mark, progress)?;
+        }
     }
     let is_enough = scene.num_marked as f64 >= ENOUGH * host.mesh.positions.len() as f64;
     match (scene.embedded(), is_enough) {
@@ -75,6 +80,8 @@ pub struct Marked<'a> {
     /// What the object that holds most reaches, and needs.
     best: Option<(f64, Needs)>,
     chosen: Vec<Chosen>,
+    /// Objects that were tried since the last that holds a mark.
+    num_in_vain: usize,
 }
 
 impl<'a> Marked<'a> {
@@ -91,6 +98,7 @@ impl<'a> Marked<'a> {
             num_marked: 0,
             best: None,
             chosen: Vec::new(),
+            num_in_vain: 0,
         }
     }
 
@@ -137,6 +145,7 @@ impl<'a> Marked<'a> {
         };
         match embed_in_frame(&host, mark, |needs| needs.sturdy, progress) {
             Ok(object) => {
+                self.num_in_vain = 0;
                 self.decide(&vertices, &object.displacement);
                 self.num_marked += vertices.len();
                 self.chosen.push(Chosen {
@@ -149,7 +158,10 @@ impl<'a> Marked<'a> {
                 Ok(())
             }
             Err(CarrierError::Cancelled(cancelled)) => Err(cancelled.into()),
-            _ => Ok(()),
+            _ => {
+                self.num_in_vain += 1;
+                Ok(())
+            }
         }
     }
 

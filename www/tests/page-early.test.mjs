@@ -38,7 +38,7 @@ test("the page is built before the study and the attacks are, and says so where 
     await page.getByRole("tab", { name: "Check" }).click();
     const input = page.getByRole("tabpanel").locator('[data-input="files"]');
     await input.setInputFiles({ name: "a.gltf", mimeType: "model/gltf+json", buffer: Buffer.from(JSON.stringify(compressed)) });
-    await page.getByRole("tabpanel").getByText("still being built").waitFor();
+    await page.getByRole("tabpanel").getByRole("heading", { name: /still being built/ }).waitFor();
     assert.equal(await page.evaluate(async () => (await navigator.serviceWorker.getRegistrations()).length), 0, "a service worker keeps this page");
   } finally {
     await browser.close();

@@ -241,11 +241,14 @@ fn expected_from(options: &Options) -> Result<Option<Payload>, JsValue> {
     }
 }
 
+/// The positions of vertices, and the vertices of triangles.
+type Triangles<'a> = (&'a [[f64; 3]], &'a [[u32; 3]]);
+
 /// Numbers by threes; a rest is refused.
 pub(super) fn surface_from<'a>(
     positions: &'a [f64],
     triangles: &'a [u32],
-) -> Result<(&'a [[f64; 3]], &'a [[u32; 3]]), JsValue> {
+) -> Result<Triangles<'a>, JsValue> {
     match (positions.as_chunks(), triangles.as_chunks()) {
         ((positions, []), (triangles, [])) => Ok((positions, triangles)),
         _ => Err(argument("positions and triangles have three numbers each")),

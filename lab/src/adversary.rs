@@ -1,6 +1,7 @@
 //! What people who know the method, and have no key, learn from marked models and do to them: traces, RING marks that are carried over to
 //! other models, and stretches that nobody sees.
 
+use crate::cell::ln_p_by;
 use crate::models::{Class, Model, Size, gathered};
 use crate::seed::Seed;
 use glam::DVec3;
@@ -174,9 +175,7 @@ fn carried_over(
 }
 
 fn ring(reading: &Extraction) -> f64 {
-    let mut carriers = reading.details().carriers.iter();
-    let ring = carriers.find(|carrier| carrier.name == Carrier::Ring);
-    ring.map_or(0.0, |carrier| carrier.ln_p)
+    ln_p_by(reading)(Carrier::Ring)
 }
 
 struct Forged {

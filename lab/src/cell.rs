@@ -37,14 +37,18 @@ pub struct Outcome {
     pub baseline: Option<f64>,
 }
 
+/// What a carrier says in a reading: the bound, what it charges itself paid.
+pub fn ln_p_by(read: &Extraction) -> impl Fn(Carrier) -> f64 {
+    move |carrier| {
+        let mut carriers = read.details().carriers.iter();
+        let own = carriers.find(|own| own.name == carrier);
+        own.map_or(0.0, |own| own.ln_p)
+    }
+}
+
 impl Outcome {
     fn new(read: &Extraction, payload: Payload, marked: &Mesh, suspect: &Mesh) -> Outcome {
-        let of = |name: Carrier| {
-            let mut carriers = read.details().carriers.iter();
-            carriers
-                .find(|carrier| carrier.name == name)
-                .map_or(0.0, |carrier| carrier.ln_p)
-        };
+        let of = ln_p_by(read);
         Outcome {
             is_decoded: read.verdict == Verdict::Found && read.number == Some(payload.number()),
             ln_p: read.details().ln_p,

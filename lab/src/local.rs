@@ -1,6 +1,7 @@
 //! LOCAL beside SOLID and RING: what it takes from them, and what is found with it in pieces that were cut out and then changed, at random
 //! planes, with keys drawn for the table; and wrong keys on suspects that are made to break its bound.
 
+use crate::cell::ln_p_by;
 use crate::models::{Class, Model, gathered};
 use crate::seed::Seed;
 use glam::DVec3;
@@ -180,15 +181,6 @@ impl Marked {
         };
         let suspect = similarity(&change(&piece, seed), seed);
         ln_p(&Measurement::new(&suspect), &self.key) + LN_LOCAL <= LN_P_FOUND
-    }
-}
-
-/// What a carrier says in a reading: the bound, what it charges itself paid.
-fn ln_p_by(read: &Extraction) -> impl Fn(Carrier) -> f64 {
-    move |carrier| {
-        let mut carriers = read.details().carriers.iter();
-        let own = carriers.find(|own| own.name == carrier);
-        own.map_or(0.0, |own| own.ln_p)
     }
 }
 

@@ -2,6 +2,7 @@
 //! its own; in the scene written as one mesh; and of a single model's mark where something else stands about it.
 
 use crate::case::Case;
+use crate::cell::ln_p_by;
 use crate::false_positives;
 use crate::models::{self, Class, Model};
 use crate::opened::{self, Opened};
@@ -140,12 +141,7 @@ struct Read {
 fn read(suspect: &Mesh, key: &Key, payload: Payload, turn: u64) -> Result<Read, String> {
     let moved = similarity(suspect, turn);
     let read = detect(&to_glb(&moved), key, None).map_err(|error| error.to_string())?;
-    let of = |name: Carrier| {
-        let mut carriers = read.details().carriers.iter();
-        carriers
-            .find(|carrier| carrier.name == name)
-            .map_or(0.0, |carrier| carrier.ln_p)
-    };
+    let of = ln_p_by(&read);
     Ok(Read {
         is_mark: match read.verdict {
             Verdict::Found => read.number == Some(payload.number()),

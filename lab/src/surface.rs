@@ -2,6 +2,7 @@
 //! strewn. Each stands beside the same suspect without that.
 
 use crate::case::Case;
+use crate::cell::ln_p_by;
 use crate::models::{Class, Model, Size};
 use crate::seed::Seed;
 use meshmark::internals::attack::{
@@ -160,12 +161,7 @@ struct Read {
 fn read(case: &Case, suspect: &Mesh, purpose: &str) -> Result<Read, String> {
     let moved = similarity(suspect, case.seed.number(purpose, 1));
     let read = detect(&to_glb(&moved), &case.key, None).map_err(|error| error.to_string())?;
-    let of = |name: Carrier| {
-        let mut carriers = read.details().carriers.iter();
-        carriers
-            .find(|carrier| carrier.name == name)
-            .map_or(0.0, |carrier| carrier.ln_p)
-    };
+    let of = ln_p_by(&read);
     Ok(Read {
         is_found: read.verdict == Verdict::Found && read.number == Some(case.payload.number()),
         solid: of(Carrier::Solid),

@@ -7,7 +7,7 @@ use super::report::{Comparison, Extraction, Input, Shape, Verdict, Witness};
 use super::weigh::{Scales, Spoken};
 use super::{EmbedOptions, Error, Model, Suspect};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, Frames, Host, Reading, Seen};
+use crate::carrier::{Carrier, Frames, Host, Reading, Seen, Way};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE};
 use crate::document::Document;
 use crate::geometry::{
@@ -261,23 +261,54 @@ impl<'a> Lying<'a> {
     }
 }
 
+/// Who hears what is read: the scales, and where it is asked whose copies the suspect was made of, the loudest ways.
+pub(super) struct Ears<'a> {
+    pub scales: Scales,
+    loudest: Option<&'a mut Loudest>,
+}
+
+impl<'a> Ears<'a> {
+    pub(super) fn new(scales: Scales, loudest: Option<&'a mut Loudest>) -> Ears<'a> {
+        Ears { scales, loudest }
+    }
+
+    /// Hears a way of reading, and says whether no other need be heard.
+    pub(super) fn hear(&mut self, mut way: Way) -> bool {
+        way.ln_num_tests += ln_num_searches();
+        let is_settled = self.scales.hear(&way);
+        match &mut self.loudest {
+            Some(loudest) => {
+                loudest.hear(way);
+                false
+            }
+            None => is_settled,
+        }
+    }
+
+    /// Whether all that was heard of the ways to lie on the original says enough of buyers.
+    pub(super) fn are_loud(&self) -> bool {
+        self.loudest
+            .as_ref()
+            .is_some_and(|loudest| loudest.are_loud())
+    }
+}
+
 /// Reads with the original, search after search, until it is sure.
 fn hear(
     host: &Host,
     suspect: &Mesh,
     key: &Key,
     expected: Option<Payload>,
-    mut loudest: Option<&mut Loudest>,
+    loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(host.mesh);
     let views = Views::new(host.mesh);
     let frames = Frames::new(host);
     let mut reader = None;
-    let mut scales = Scales::new(key).expecting(expected);
+    let mut ears = Ears::new(Scales::new(key).expecting(expected), loudest);
     let mut first: Option<Lay> = None;
     let mut lyings: Vec<Lying> = Vec::new();
-    let ln_num_searches = ln_num_searches();
     let mut read = |new: &[Lying], known: usize, progress: &mut dyn Progress| {
         let observe: Vec<_> = new.iter().flat_map(views_of).collect();
         let seen: Vec<&Seen> = observe.iter().map(|observe| &**observe).collect();
@@ -286,17 +317,11 @@ fn hear(
             let reader = reader.get_or_insert_with(|| frames.with_key(key));
             reader.read(&seen, progress, &mut |mut way| {
                 way.list += 2 * known;
-                way.ln_num_tests += ln_num_searches;
-                let is_enough = scales.hear(&way);
-                match &mut loudest {
-                    Some(loudest) => loudest.hear(way),
-                    None => is_settled = is_enough,
-                }
+                is_settled = ears.hear(way);
                 is_settled
             })?;
         }
-        is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
-        Ok::<bool, Error>(is_settled)
+        Ok::<bool, Error>(is_settled || ears.are_loud())
     };
     let mut starts = Vec::new();
     let mut is_done = false;
@@ -335,7 +360,7 @@ fn hear(
         read(&lyings[known..], known, progress)?;
         assembled = Some(assembly.mesh);
     }
-    let scales = scales.conclude();
+    let scales = ears.scales.conclude();
     Ok(Heard {
         other: scales.other,
         ln_p_presence: scales.ln_p_presence,
@@ -354,7 +379,7 @@ fn hear(
 
 /// What each search is charged: a half of the probability is for reading without the original; and each search, and the parts of a suspect that is taken
 /// apart, share the other half, whether they are made or not.
-pub(super) fn ln_num_searches() -> f64 {
+fn ln_num_searches() -> f64 {
     LN_2 + libm::log(Search::ALL.len() as f64 + 1.0)
 }
 

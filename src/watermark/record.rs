@@ -3,8 +3,7 @@
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
 use super::compare::{
-    Compared, Heard, Informed, Lay, is_to_be_taken_apart, ln_num_searches, options_of_original,
-    with_host,
+    Compared, Ears, Heard, Informed, Lay, is_to_be_taken_apart, options_of_original, with_host,
 };
 use super::loudest::Loudest;
 use super::overlay::Overlay;
@@ -234,27 +233,20 @@ fn hear(
     suspect: &Mesh,
     key: &Key,
     expected: Option<Payload>,
-    mut loudest: Option<&mut Loudest>,
+    loudest: Option<&mut Loudest>,
     progress: &mut dyn Progress,
 ) -> Result<Heard, Error> {
     let original = Original::new(shape);
-    let mut scales = Scales::new(key).expecting(expected);
+    let mut ears = Ears::new(Scales::new(key).expecting(expected), loudest);
     let mut lays: Vec<Lay> = Vec::new();
-    let ln_num_searches = ln_num_searches();
     let mut read = |mesh: &Mesh, motions: &[Motion], known: usize| {
         let mut is_settled = false;
         recorded.read(mesh, motions, key, &mut |mut way| {
             way.list = 2 * (known + way.list);
-            way.ln_num_tests += ln_num_searches;
-            let is_enough = scales.hear(&way);
-            match &mut loudest {
-                Some(loudest) => loudest.hear(way),
-                None => is_settled = is_enough,
-            }
+            is_settled = ears.hear(way);
             is_settled
         });
-        is_settled |= loudest.as_ref().is_some_and(|loudest| loudest.are_loud());
-        is_settled
+        is_settled || ears.are_loud()
     };
     let mut starts = Vec::new();
     let mut is_settled = false;
@@ -291,7 +283,7 @@ fn hear(
         assembled = Some(assembly.mesh);
     }
     let by_near = |a: &&Lay, b: &&Lay| a.registration.near.total_cmp(&b.registration.near);
-    let scales = scales.conclude();
+    let scales = ears.scales.conclude();
     Ok(Heard {
         other: scales.other,
         ln_p_presence: scales.ln_p_presence,

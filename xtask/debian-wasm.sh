@@ -2,7 +2,7 @@
 # Makes Debian's Rust compiler fit for wasm. It knows the target but has no standard library for it, so that is built here, once,
 # from Debian's source. It goes with links to the rest of the compiler into FOLDER; wasm commands have FOLDER/bin first on PATH.
 #
-# usage: debian-wasm.sh FOLDER TARGET_DIR    TARGET_DIR: what was compiled with an old standard library, and has to go with it
+# usage: debian-wasm.sh FOLDER TARGET_DIR    TARGET_DIR: what was compiled with another standard library goes
 set -eu
 folder=$1 target_dir=$2
 target=wasm32-unknown-unknown
@@ -20,6 +20,17 @@ if [ ! -f "$linker" ]; then
 fi
 
 made_from=$(echo "$folder $linker" && /usr/bin/rustc -vV && cat "$here/debian-wasm.sh")
+# What was compiled with another standard library is of no use with this one.
+if [ "$made_from" != "$(cat "$target_dir/made-with" 2> /dev/null)" ]; then
+  rm -rf "$target_dir"
+  mkdir -p "$target_dir"
+  printf '%s\n' "$made_from" > "$target_dir/made-with" # echo of some shells reads backslashes
+fi
+
+# Every checkout has the folder: one makes it, the others wait.
+mkdir -p "$(dirname "$folder")"
+exec 9> "$folder.lock"
+flock 9
 if [ "$made_from" = "$(cat "$folder/made-from" 2> /dev/null)" ]; then
   echo "$folder has $target"
   exit
@@ -27,7 +38,7 @@ fi
 
 # The standard library, as a dependency of an empty crate.
 rustlib=$folder/lib/rustlib
-rm -rf "$folder" "$target_dir"
+rm -rf "$folder"
 mkdir -p "$folder/std/src" "$folder/bin" "$rustlib/$target/lib" "$rustlib/$host/bin"
 cd "$folder/std"
 echo '#![no_std]' > src/lib.rs
@@ -59,4 +70,4 @@ for tool in rustc rustdoc clippy-driver; do
   printf '#!/bin/sh\nexec /usr/bin/%s "$@" --sysroot '"'%s'"'\n' $tool "$folder" > bin/$tool
   chmod +x bin/$tool
 done
-printf '%s\n' "$made_from" > made-from # echo of some shells reads backslashes
+printf '%s\n' "$made_from" > made-from

@@ -11,9 +11,10 @@ use crate::toolchain::{TARGET, TARGET_DIR};
 use crate::{browser, fuzz, npm, page, wasm};
 
 const LINT: &str = "correct what clippy names above";
+const COMPILE: &str = "correct what the compiler names above";
 const TESTS: &str = "see the failed tests above";
 
-/// What every native test step compiles alike, so that it is compiled once: tests, examples and what documentation shows.
+/// What every native test step compiles alike, so that it is compiled once.
 const NATIVE: &str = "cargo test --workspace";
 
 /// More than a third of the time of the suite in wasm. Nothing in these differs between targets that others do not try too; `--all` runs them, in Node.
@@ -36,7 +37,14 @@ pub fn test(all: bool) -> Result<()> {
     add(&mut steps, "format", &[], format, "run `cargo fmt --all`");
     let lint = "cargo clippy --workspace --all-targets --all-features -- -Dwarnings";
     add(&mut steps, "native lint", &["format"], lint, LINT);
-    add(&mut steps, "native tests", &["native lint"], NATIVE, TESTS);
+    let compile = format!("{NATIVE} --no-run");
+    let name = "native tests, compiled";
+    add(&mut steps, name, &["native lint"], &compile, COMPILE);
+    // Side by side, and by a first letter, so that none is in neither: the suite, and all others.
+    let suite = format!("{NATIVE} --test s*");
+    add(&mut steps, "native suite", &[name], &suite, TESTS);
+    let others = format!("{NATIVE} --lib --bins --test [!s]*");
+    add(&mut steps, "other native tests", &[name], &others, TESTS);
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
     steps.add("Chromium", &["format"], browser::set_up);
@@ -51,12 +59,13 @@ pub fn test(all: bool) -> Result<()> {
             log.run(&mut test, TESTS)
         },
     );
-    steps.add("documentation", &["native tests"], |log| {
+    steps.add("documentation", &["native suite"], |log| {
+        log.run(&mut command(&format!("{NATIVE} --doc")), TESTS)?;
         let mut doc = command("cargo doc --no-deps --package meshmark");
         doc.env("RUSTDOCFLAGS", "-Dwarnings");
         log.run(&mut doc, "correct what rustdoc names above")
     });
-    let after = ["page", "native tests"];
+    let after = ["page", "other native tests"];
     steps.add("reports of the command line", &after, |log| {
         let mut test = npm_test("run test:command-line");
         test.env("MESHMARK_CLI", path("target/debug/meshmark"));
@@ -65,7 +74,7 @@ pub fn test(all: bool) -> Result<()> {
     if path("../shared/models").is_dir() {
         let models = format!("{NATIVE} --test suite -- --ignored models::");
         let name = "tests with research models";
-        add(&mut steps, name, &["native tests"], &models, TESTS);
+        add(&mut steps, name, &["native suite"], &models, TESTS);
     }
     // In a worker, as the package runs; there Chromium's engine is Node's.
     let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
@@ -87,12 +96,12 @@ pub fn test(all: bool) -> Result<()> {
 
 /// Adds what is left out of a commit's checks.
 fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
-    let native = ["native tests"];
+    let native = ["native suite"];
     let rest = format!("{NATIVE} --test suite -- --ignored --skip models::");
     add(steps, "all floors and keys", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =
-            "cargo clippy --lib --test suite --features wasm-full,wasm-study,wasm-attacks -- -Dwarnings";
+            "cargo clippy --lib --test suite --features wasm-full,wasm-research -- -Dwarnings";
         log.run(&mut wasm::command(manifest, lint)?, LINT)
     });
     steps.add("wasm tests in Node", &["wasm tests in Chromium"], |log| {
@@ -123,7 +132,7 @@ fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
 /// Compiles somebody else's crate for wasm, and sees that it exports its own function alone and has none of the bindings' crates.
 fn check_dependent(log: &mut Log, manifest: &Manifest) -> Result<()> {
     let mut build = wasm::command(manifest, "cargo build --release --package dependent")?;
-    log.run(&mut build, "correct what the compiler names above")?;
+    log.run(&mut build, COMPILE)?;
     let module = format!("{TARGET_DIR}/{TARGET}/release/dependent.wasm");
     let mut check = command(&format!("node tests/dependent/check.mjs {module}"));
     log.run(&mut check, "see which feature of the library exports it")

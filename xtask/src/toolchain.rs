@@ -15,7 +15,17 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 pub const TARGET_DIR: &str = "target/wasm";
 
 /// Debian's compiler with the target's standard library.
-const DEBIAN: &str = "target/wasm-toolchain";
+fn debian() -> Result<PathBuf> {
+    Ok(cache()?.join("wasm-toolchain"))
+}
+
+/// What takes minutes to compile and no checkout changes: every checkout of this user has it together.
+fn cache() -> Result<PathBuf> {
+    let base = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
+    let base = base.or_else(|| Some(std::env::home_dir()?.join(".cache")));
+    let base = base.context("neither XDG_CACHE_HOME nor HOME is set")?;
+    Ok(base.join("meshmark"))
+}
 
 /// Finds or makes a compiler that has the target's standard library.
 pub fn set_up_compiler(log: &mut Log) -> Result<()> {
@@ -27,7 +37,7 @@ pub fn set_up_compiler(log: &mut Log) -> Result<()> {
         process::command("rustup target add wasm32-unknown-unknown")
     } else {
         let mut script = process::command("sh xtask/debian-wasm.sh");
-        script.args([path(DEBIAN), path(TARGET_DIR)]);
+        script.args([debian()?, path(TARGET_DIR)]);
         script
     };
     log.run(&mut install, BY_HAND)
@@ -38,9 +48,13 @@ pub fn command(words: &str) -> Result<Command> {
     let mut command = process::command(words);
     command
         .env("CARGO_BUILD_TARGET", TARGET)
-        .env("CARGO_TARGET_DIR", path(TARGET_DIR));
+        .env("CARGO_TARGET_DIR", path(TARGET_DIR))
+        .env(
+            "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER",
+            tool("wasm-bindgen-test-runner")?,
+        );
     if !rustc_has_target()? {
-        let mut folders = OsString::from(path(DEBIAN).join("bin:"));
+        let mut folders = OsString::from(debian()?.join("bin:"));
         folders.push(std::env::var_os("PATH").unwrap_or_default());
         command.env("PATH", folders);
         // What rustup's cargo sets for its own compiler.
@@ -67,27 +81,38 @@ fn rustc_has_target() -> Result<bool> {
 }
 
 /// A program among wasm-bindgen's tools.
-pub fn tool(name: &str) -> PathBuf {
-    path("target/tools/bin").join(name)
+pub fn tool(name: &str) -> Result<PathBuf> {
+    Ok(tools(&bindgen_version()?)?.join("bin").join(name))
 }
 
-/// Installs wasm-bindgen's tools, of the very version that Cargo.lock has; cargo does nothing where they are there.
-pub fn set_up_tools(log: &mut Log) -> Result<()> {
-    const REMEDY: &str = "see what cargo says above: a version that cannot be found, a registry that does not answer, or a compiler \
-        that is too old";
+fn tools(version: &str) -> Result<PathBuf> {
+    Ok(cache()?.join(format!("wasm-bindgen-{version}")))
+}
+
+/// The version that Cargo.lock has: the tools must be of the very same.
+fn bindgen_version() -> Result<String> {
     let package = output(&mut process::command("cargo pkgid wasm-bindgen"))?;
     let (_, version) = package
         .rsplit_once('@')
         .context("cargo pkgid names no version")?;
-    // Without default features there is no TLS: the test runner talks to a driver on this machine only.
-    let install = format!(
-        "cargo install --quiet wasm-bindgen-cli --version {version} --no-default-features --root target/tools \
-         --bin wasm-bindgen --bin wasm-bindgen-test-runner"
-    );
+    Ok(version.to_owned())
+}
+
+/// Installs wasm-bindgen's tools; cargo does nothing where they are there.
+pub fn set_up_tools(log: &mut Log) -> Result<()> {
+    const REMEDY: &str = "see what cargo says above: a version that cannot be found, a registry that does not answer, or a compiler \
+        that is too old";
+    let version = bindgen_version()?;
+    let root = tools(&version)?;
     let install = |lock: &str| {
-        let mut install = process::command(&format!("{install} {lock}"));
+        // Without default features there is no TLS: the test runner talks to a driver on this machine only.
+        let mut install = process::command(&format!(
+            "cargo install --quiet wasm-bindgen-cli --version {version} --no-default-features \
+             --bin wasm-bindgen --bin wasm-bindgen-test-runner {lock} --root"
+        ));
         // They are built longer than they ever run.
         install
+            .arg(&root)
             .env_remove("CARGO_TARGET_DIR")
             .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
             .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");

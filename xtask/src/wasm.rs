@@ -92,7 +92,7 @@ fn package_module(log: &mut Log, manifest: &Manifest, module: &Module) -> Result
         if out_dir.exists() {
             fs::remove_dir_all(&out_dir)?;
         }
-        let mut bind = Command::new(toolchain::tool("wasm-bindgen"));
+        let mut bind = Command::new(toolchain::tool("wasm-bindgen")?);
         bind.args(["--target", &manifest.target, "--out-name", &module.name])
             .arg("--out-dir")
             .args([&out_dir, &compiled]);

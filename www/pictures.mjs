@@ -4,14 +4,14 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { demoModel, init } from "meshmark";
-import * as attacks from "./app/attacks-wasm/attacks.js";
+import * as attacks from "./app/research-wasm/research.js";
 import { launch, serve, SLOW } from "./tests/browser.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "meshmark-pictures-"));
 const saved = (name, bytes) => (writeFileSync(join(folder, name), bytes), join(folder, name));
 
 await init();
-await attacks.default({ module_or_path: readFileSync(new URL("app/attacks-wasm/attacks_bg.wasm", import.meta.url)) });
+await attacks.default({ module_or_path: readFileSync(new URL("app/research-wasm/research_bg.wasm", import.meta.url)) });
 const original = saved("rock.glb", demoModel());
 
 const server = await serve(new URL("app", import.meta.url));

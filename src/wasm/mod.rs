@@ -1,25 +1,24 @@
 //! What JavaScript sees: options decoded, one library function called, its result encoded. Nothing is computed here.
 //!
-//! There are four modules, each with a feature and a contract of its own, so that a page that only marks and checks loads nothing
-//! else: `marks.rs` with `types.d.ts`, `study.rs` with `study.d.ts`, `attacks.rs` with `attacks.d.ts`. The fourth has all of `marks.rs`,
-//! and beside it `informed.rs` and `copies.rs`, with `full.d.ts`. The package's
+//! There are three modules, each with a feature and contracts of its own, so that a page that only marks and checks loads nothing
+//! else: `marks.rs` with `types.d.ts`; a second that has all of it, and beside it `informed.rs` and `copies.rs`, with `full.d.ts`; and
+//! a third for research, `study.rs` and `attacks.rs` with `research.d.ts`. The package's
 //! tests hold the contracts to what is exported. What a call cannot do without are its arguments; all else is in one object, its
 //! last. Bytes cross as `Uint8Array`, reports by serde. Errors are plain objects `{code, message, path}`.
 
-#[cfg(feature = "wasm-attacks")]
+#[cfg(feature = "wasm-research")]
 mod attacks;
 #[cfg(feature = "wasm-full")]
 mod copies;
 #[cfg(feature = "wasm-full")]
 mod informed;
-#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 mod listener;
 #[cfg(feature = "wasm-marks")]
 mod marks;
 mod options;
 #[cfg(feature = "wasm-full")]
 mod statement;
-#[cfg(feature = "wasm-study")]
+#[cfg(feature = "wasm-research")]
 mod study;
 
 use crate::Files;
@@ -32,6 +31,11 @@ use wasm_bindgen::prelude::*;
 #[cfg(feature = "wasm-full")]
 #[wasm_bindgen(typescript_custom_section)]
 const FULL_TYPES: &str = include_str!("full.d.ts");
+
+/// Of the module for research: what `study.rs` and `attacks.rs` export.
+#[cfg(feature = "wasm-research")]
+#[wasm_bindgen(typescript_custom_section)]
+const RESEARCH_TYPES: &str = include_str!("research.d.ts");
 
 /// A panic stops the module, and the package can say no more than `internal`: the console says what happened and where, so that
 /// it can be reported.
@@ -62,7 +66,6 @@ fn files_from(value: &JsValue) -> Result<Files, JsValue> {
     Ok(named)
 }
 
-#[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
 fn set(object: &Object, name: &str, value: &JsValue) -> Result<(), JsValue> {
     js_sys::Reflect::set(object, &name.into(), value).map(drop)
 }

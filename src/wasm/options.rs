@@ -50,7 +50,6 @@ impl Options {
     }
 
     /// Who hears of progress; nobody where that was left out.
-    #[cfg(any(feature = "wasm-marks", feature = "wasm-study"))]
     pub fn listener(&self) -> Result<super::listener::Listener, JsValue> {
         let on_progress = self.get("onProgress");
         let function = match on_progress.is_undefined() {
@@ -64,7 +63,7 @@ impl Options {
     }
 
     /// All options at once, those that were left out by their defaults.
-    #[cfg(feature = "wasm-study")]
+    #[cfg(feature = "wasm-research")]
     pub fn decoded<T: for<'a> serde::Deserialize<'a>>(&self) -> Result<T, JsValue> {
         let given = Object::new();
         if let Some(options) = self.0.dyn_ref::<Object>() {

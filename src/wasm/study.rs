@@ -14,9 +14,6 @@ use js_sys::{Float64Array, Object, Reflect, Uint32Array};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
-#[wasm_bindgen(typescript_custom_section)]
-const TYPES: &str = include_str!("study.d.ts");
-
 /// Smoothing more often would fill the memory: a subdivision gives four times the faces.
 const MAX_ITERATIONS: u32 = 2;
 

@@ -34,7 +34,7 @@ function standIns(): Plugin {
     name: "stand-ins",
     enforce: "pre", // before Vite looks for the file
     config: (_, { mode }) => void (isEarly = mode === "early"),
-    resolveId: (source) => (isEarly && /\/((study|attacks)-wasm|wasm-full)\/\w+\.js$/.test(source) ? fileURLToPath(new URL("src/building.ts", import.meta.url)) : null),
+    resolveId: (source) => (isEarly && /\/(research-wasm|wasm-full)\/\w+\.js$/.test(source) ? fileURLToPath(new URL("src/building.ts", import.meta.url)) : null),
   };
 }
 

@@ -2,7 +2,7 @@
 // no message's way to the page is in them.
 import * as meshmark from "../meshmark/dist/index.js";
 import load from "../meshmark/wasm/meshmark.js";
-import loadStudy, * as study from "../app/study-wasm/study.js";
+import loadStudy, * as study from "../app/research-wasm/research.js";
 
 const commands = {
   key({ owner, passphrase }, clock) {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before } from "node:test";
 import * as meshmark from "meshmark";
-import * as attacks from "../app/attacks-wasm/attacks.js";
+import * as attacks from "../app/research-wasm/research.js";
 import { assertFits, assertNamed, button, check, comeToLook, drop, dropped, fillKey, headline, hold, isSame, looks, NARROW, onDisk, onPage, page, PHONE, picture, result, saved, savedReport, unseen, view } from "./page.mjs";
 import { CUBE, glbFromObj, OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 

@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { strFromU8, unzipSync } from "fflate";
 import { before } from "node:test";
-import * as attacks from "../app/attacks-wasm/attacks.js";
+import * as attacks from "../app/research-wasm/research.js";
 import { button, check, dropped, fillKey, folder, headline, onDisk, onPage, page, picture, result, saved, view } from "./page.mjs";
 import { smallModel } from "./support.mjs";
 

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import validator from "gltf-validator";
 import * as meshmark from "meshmark";
-import * as attacks from "../app/attacks-wasm/attacks.js";
+import * as attacks from "../app/research-wasm/research.js";
 
 export const repository = new URL("../../", import.meta.url);
 export const packageFolder = new URL("../meshmark/", import.meta.url);
@@ -49,7 +49,7 @@ export function sharedModel(path, t) {
 
 /** The demo model with 30 % of its triangles, for what does not depend on a model's size: both carriers still hold a mark in it. */
 export async function smallModel() {
-  await Promise.all([meshmark.init(), attacks.default({ module_or_path: readFileSync(new URL("../app/attacks-wasm/attacks_bg.wasm", import.meta.url)) })]);
+  await Promise.all([meshmark.init(), attacks.default({ module_or_path: readFileSync(new URL("../app/research-wasm/research_bg.wasm", import.meta.url)) })]);
   return attacks.attack(meshmark.demoModel(), ["simplify 70 %"]);
 }
 

@@ -1,7 +1,7 @@
 /** One thing done to a marked model, from before it is begun to what came of it. */
 import type { DetailedExtraction } from "meshmark";
 import { MeshmarkError } from "meshmark/client";
-import type { Quality } from "../../attacks-wasm/attacks.js";
+import type { Quality } from "../../research-wasm/research.js";
 import type { Model } from "../model";
 
 /** What is left of a mark: its own tag found, something of the key there, nothing. */

@@ -1,7 +1,7 @@
 /** A marked model and its key, and whatever can be done to the one and read with the other. */
 import type { Extraction } from "meshmark";
 import { createClient, type Client } from "meshmark/client";
-import type { Attack } from "../../attacks-wasm/attacks.js";
+import type { Attack } from "../../research-wasm/research.js";
 import { renamed, type Model } from "../model";
 import { detect } from "../reading";
 import type { Progress } from "../task";

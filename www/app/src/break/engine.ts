@@ -1,5 +1,5 @@
 /** The attacks' module, in a worker of its own. */
-import type { Attack, AttackOptions, Quality, QualityOptions } from "../../attacks-wasm/attacks.js";
+import type { Attack, AttackOptions, Quality, QualityOptions } from "../../research-wasm/research.js";
 import { Remote, type CallOptions } from "../remote";
 
 const remote = new Remote(() => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));

@@ -1,5 +1,5 @@
 /** The survival map: every attack at every level, filled in while it is tried. */
-import type { Family } from "../../attacks-wasm/attacks.js";
+import type { Family } from "../../research-wasm/research.js";
 import { announce, button, h } from "../dom";
 import type { Attempt } from "./attempt";
 import { cameOf, capital, FAMILIES, LEFT, type Choice, type Step } from "./words";

@@ -1,5 +1,5 @@
 /** The attacks to choose from: by family, each with its levels on a slider. */
-import type { Family } from "../../attacks-wasm/attacks.js";
+import type { Family } from "../../research-wasm/research.js";
 import { button, h } from "../dom";
 import { capital, FAMILIES, type Choice, type Step } from "./words";
 

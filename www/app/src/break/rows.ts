@@ -1,6 +1,6 @@
 /** What was tried, one a row: what was left of the mark, and what it cost. */
 import type { Carrier } from "meshmark";
-import type { Quality } from "../../attacks-wasm/attacks.js";
+import type { Quality } from "../../research-wasm/research.js";
 import { announce, button, h } from "../dom";
 import { isGltf } from "../model";
 import { oddsOf } from "../outcome";

@@ -1,5 +1,5 @@
 /** The attacks' names and what came of them, in words. */
-import type { Attack, Family } from "../../attacks-wasm/attacks.js";
+import type { Attack, Family } from "../../research-wasm/research.js";
 import { odds } from "../words";
 import type { Attempt, Level } from "./attempt";
 import { SECOND_MARK } from "./bench";

@@ -1,5 +1,5 @@
 /** The worker behind the attacks: it loads their module with the first call. */
-import load, * as attacks from "../../attacks-wasm/attacks.js";
+import load, * as attacks from "../../research-wasm/research.js";
 import { answer } from "../remote";
 
 // By their module: while it is still being built its stand-in has none of them.

@@ -1,5 +1,5 @@
 /** The study's module, in a worker of its own. Calls come back in the order in which they were made. */
-import type { Errors, ErrorsOptions, Fields, HostsOptions, HostsRow, Parameters, Preparation, Prepared, PrepareOptions, Ranking, StudyMesh, TraceOptions, Tracing } from "../../study-wasm/study.js";
+import type { Errors, ErrorsOptions, Fields, HostsOptions, HostsRow, Parameters, Preparation, Prepared, PrepareOptions, Ranking, StudyMesh, TraceOptions, Tracing } from "../../research-wasm/research.js";
 import { Remote, type CallOptions } from "../remote";
 import type { Ranked } from "./worker";
 

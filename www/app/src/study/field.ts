@@ -1,5 +1,5 @@
 /** One number at every vertex, as colours with a scale. */
-import type { Fields, Tracing } from "../../study-wasm/study.js";
+import type { Fields, Tracing } from "../../research-wasm/research.js";
 import { percent, significant } from "../words";
 
 export type FieldName = "stability" | "gaussian" | "mean" | "deviation";

@@ -1,5 +1,5 @@
 /** Fig. 5: how often bits are wrong, against the smoothing and against the strength, as points come in. */
-import type { Errors, Finding, Hosts } from "../../study-wasm/study.js";
+import type { Errors, Finding, Hosts } from "../../research-wasm/research.js";
 import { h } from "../dom";
 import { percent } from "../words";
 import { plot, plotLegend, type Series } from "./plot";

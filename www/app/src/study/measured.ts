@@ -1,5 +1,5 @@
 /** Table I and Fig. 5 of one model, filled in while they are measured. */
-import type { Prepared, Hosts, HostsRow, Parameters, Smoothing } from "../../study-wasm/study.js";
+import type { Prepared, Hosts, HostsRow, Parameters, Smoothing } from "../../research-wasm/research.js";
 import { announce, h } from "../dom";
 import type { Task } from "../task";
 import { percent } from "../words";

@@ -1,6 +1,6 @@
 /** The left side of the study: the model's mesh as the paper's, its hosts, and what the colours mean. */
 import type { Inspection } from "meshmark";
-import type { Prepared, Fields, Tracing } from "../../study-wasm/study.js";
+import type { Prepared, Fields, Tracing } from "../../research-wasm/research.js";
 import { find, h } from "../dom";
 import type { Model } from "../model";
 import { Showing, type StageEvents } from "../showing";

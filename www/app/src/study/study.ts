@@ -1,5 +1,5 @@
 /** Study: a model's hosts, before and after smoothing, and the paper's experiment on it. */
-import type { Fields, Preparation, Prepared, Ranking, Smoothing, Tracing } from "../../study-wasm/study.js";
+import type { Fields, Preparation, Prepared, Ranking, Smoothing, Tracing } from "../../research-wasm/research.js";
 import { announce, find, h, setProblem } from "../dom";
 import type { Model } from "../model";
 import { errorCard, numbers } from "../outcome";

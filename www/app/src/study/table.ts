@@ -1,5 +1,5 @@
 /** Table I: how many hosts are found again, as rows come in. */
-import type { HostsRow, Rule, RuleCounts, Spread } from "../../study-wasm/study.js";
+import type { HostsRow, Rule, RuleCounts, Spread } from "../../research-wasm/research.js";
 import { h } from "../dom";
 import { count, significant } from "../words";
 import { RANKINGS, RULES } from "./words";

@@ -13,7 +13,7 @@ import {
   type Material,
   type Object3D,
 } from "three";
-import type { StudyMesh, Tracing } from "../../study-wasm/study.js";
+import type { StudyMesh, Tracing } from "../../research-wasm/research.js";
 import { colorAt } from "../viewer/colormap";
 import { CLAY, HEAT, WIRES } from "../viewer/layer";
 import { Orbit } from "../viewer/orbit";

@@ -1,5 +1,5 @@
 /** The study's names in words. */
-import type { Errors, Finding, Hosts, Preparation, Ranking, Rule, Smoothing } from "../../study-wasm/study.js";
+import type { Errors, Finding, Hosts, Preparation, Ranking, Rule, Smoothing } from "../../research-wasm/research.js";
 
 export const PREPARATIONS: Record<Preparation, { name: string; hint: string }> = {
   optimize: { name: "Optimize (face threshold)", hint: "The paper’s: leaves thin triangles. A model that is no larger stays as it is." },

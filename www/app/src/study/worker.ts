@@ -1,6 +1,6 @@
 /** The worker behind the study: it loads the study's module with the first call. */
-import load, * as study from "../../study-wasm/study.js";
-import type { Ranking, StudyMesh } from "../../study-wasm/study.js";
+import load, * as study from "../../research-wasm/research.js";
+import type { Ranking, StudyMesh } from "../../research-wasm/research.js";
 import { answer } from "../remote";
 
 // By their module: while it is still being built its stand-in has none of them.

@@ -1,9 +1,9 @@
 //! Buffer views that meshoptimizer's codecs hold.
 
 use meshoptimizer_rs::codec::{
-    Filter, Mode, VertexEncoding, decode_filter_color, decode_filter_exp, decode_filter_oct,
-    decode_filter_quat, decode_index_buffer, decode_index_sequence, decode_vertex_buffer,
-    decode_vertex_version, encode_vertex_buffer,
+    ExpMode, Filter, Mode, VertexEncoding, decode_filter_color, decode_filter_exp,
+    decode_filter_oct, decode_filter_quat, decode_index_buffer, decode_index_sequence,
+    decode_vertex_buffer, decode_vertex_version, encode_filter_exp, encode_vertex_buffer,
 };
 use meshoptimizer_rs::{Limits, Workspace};
 use serde_json::Value;
@@ -120,39 +120,88 @@ pub(super) fn raw_extension(view: &RawValue) -> Option<(&RawValue, Value)> {
     Some((*raw, serde_json::from_str(raw.get()).ok()?))
 }
 
-/// Encodes the views that changed, each with the mode, the filter and the version that it had. Whether that could be done: not of a filtered
-/// view, for filters round, and not if a plain copy goes with the streams.
+/// Encodes the views that changed, each with the mode, the filter and the version that it had, and writes them into the plain copy that goes
+/// with the streams, where there is one. Whether that could be done.
 pub(super) fn encode(root: &Value, plain: &Plain, host: &Host, streams: &mut Streams) -> bool {
     let views = list(root, "bufferViews").iter().enumerate();
-    let changed =
-        views.filter_map(|(index, view)| Some((extension(view)?.1, plain.changed(index)?)));
-    let has_copy = list(root, "buffers")
-        .iter()
-        .any(|buffer| extension(buffer).is_some() && buffer.get("uri").is_some());
-    changed.into_iter().all(|(stream, bytes)| {
-        !has_copy && encode_view(root, stream, bytes, host, streams).is_some()
+    let mut changed = views.filter_map(|(index, view)| {
+        let (_, stream) = extension(view)?;
+        Some((view, stream, plain.before(index)?, plain.changed(index)?))
+    });
+    changed.all(|(view, stream, before, now)| {
+        encode_view(host, root, (view, stream), (before, now), streams).is_some()
     })
 }
 
 fn encode_view(
-    root: &Value,
-    stream: &Value,
-    bytes: &[u8],
     host: &Host,
+    root: &Value,
+    (view, stream): (&Value, &Value),
+    (before, now): (&[u8], &[u8]),
     streams: &mut Streams,
 ) -> Option<()> {
     let word = |name: &str| stream.get(name).and_then(Value::as_str);
-    if word("mode") != Some("ATTRIBUTES") || word("filter").is_some_and(|filter| filter != "NONE") {
+    if word("mode") != Some("ATTRIBUTES") {
         return None;
     }
     let segment = Segment::of(stream)?;
-    let version = decode_vertex_version(host.segment(root, segment)?).ok()?;
+    let old = host.segment(root, segment)?;
     let (count, stride) = (whole(stream, "count")?, whole(stream, "byteStride")?);
-    let encoding = VertexEncoding::new(version, LEVEL).ok()?;
     let mut workspace = Workspace::new(Limits::default());
-    let encoded = encode_vertex_buffer(bytes, count, stride, encoding, &mut workspace).ok()?;
+    let (filtered, seen) = match word("filter").unwrap_or("NONE") {
+        "NONE" => (now.to_vec(), now.to_vec()),
+        "EXPONENTIAL" => exponential(before, now, count, stride, &mut workspace)?,
+        // What the others hold are no positions.
+        _ => return None,
+    };
+    let encoding = VertexEncoding::new(decode_vertex_version(old).ok()?, LEVEL).ok()?;
+    let encoded = encode_vertex_buffer(&filtered, count, stride, encoding, &mut workspace).ok()?;
     let decoded = decode_vertex_buffer(count, stride, &encoded, &mut workspace).ok()?;
-    (decoded == bytes).then_some(())?;
+    (decoded == filtered).then_some(())?;
     streams.insert(segment, encoded);
+    let copy = Segment::of(view)?;
+    let buffer = list(root, "buffers").get(copy.buffer)?;
+    if buffer.get("uri").is_some() {
+        host.segment(root, copy)?;
+        streams.insert(copy, seen);
+    }
     Some(())
+}
+
+/// What the filter for floats may give an exponent to.
+const EXPONENTS: [ExpMode; 4] = [
+    ExpMode::SharedVector,
+    ExpMode::Separate,
+    ExpMode::SharedComponent,
+    ExpMode::Clamped,
+];
+
+/// The most bits of a mantissa that the filter has.
+const MOST_BITS: u32 = 24;
+
+/// Floats through the filter as the host's went: its stream does not tell the bits and what has an exponent, so the first are taken with which
+/// the host's come out as they went in. The filtered bytes, and what comes of them; `None` if vertices that did not change would.
+fn exponential(
+    host: &[u8],
+    new: &[u8],
+    count: usize,
+    stride: usize,
+    workspace: &mut Workspace,
+) -> Option<(Vec<u8>, Vec<u8>)> {
+    let mut through = |bytes: &[u8], mode: ExpMode, bits: u32| {
+        let numbers = bytes.as_chunks().0.iter().copied().map(f32::from_le_bytes);
+        let numbers: Vec<f32> = numbers.collect();
+        let filtered = encode_filter_exp(count, stride, bits, &numbers, mode, workspace).ok()?;
+        let mut seen = filtered.clone();
+        decode_filter_exp(&mut seen, count, stride, workspace).ok()?;
+        Some((filtered, seen))
+    };
+    let mut choices = (1..=MOST_BITS).flat_map(|bits| EXPONENTS.map(|mode| (mode, bits)));
+    let (mode, bits) = choices
+        .find(|&(mode, bits)| through(host, mode, bits).is_some_and(|(_, seen)| seen == host))?;
+    let (filtered, seen) = through(new, mode, bits)?;
+    let vertices = host.chunks(stride).zip(new.chunks(stride));
+    let mut all = vertices.zip(seen.chunks(stride));
+    all.all(|((host, new), seen)| host != new || seen == host)
+        .then_some((filtered, seen))
 }

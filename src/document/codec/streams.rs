@@ -70,14 +70,15 @@ pub(super) struct Plain<'a> {
 }
 
 impl Plain<'_> {
+    /// The bytes of a view before.
+    pub fn before(&self, view: usize) -> Option<&[u8]> {
+        self.before.get(self.views.get(view)?.clone())
+    }
+
     /// The bytes of a view now, if they are others than before.
     pub fn changed(&self, view: usize) -> Option<&[u8]> {
-        let range = self.views.get(view)?;
-        let (now, before) = (
-            self.now.get(range.clone())?,
-            self.before.get(range.clone())?,
-        );
-        (now != before).then_some(now)
+        let now = self.now.get(self.views.get(view)?.clone())?;
+        (now != self.before(view)?).then_some(now)
     }
 }
 

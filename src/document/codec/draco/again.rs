@@ -11,6 +11,9 @@ use serde_json::Value;
 /// The most bits that a grid is looked for with: the numbers of finer ones are too few for 32-bit floats to tell.
 const MOST_BITS: i32 = 20;
 
+/// Draco's number of the method that writes vertices and triangles in their order.
+const SEQUENTIAL: u8 = 0;
+
 /// The bits of normals that exporters use, the usual ones first.
 const NORMAL_BITS: [i32; 12] = [8, 10, 12, 7, 9, 11, 6, 13, 14, 15, 16, 5];
 
@@ -21,6 +24,8 @@ pub(super) struct Job<'a> {
     positions: &'a [u8],
     position: i32,
     pub position_bits: i32,
+    /// The host's, or the one that keeps the order of vertices and triangles.
+    method: u8,
 }
 
 impl<'a> Job<'a> {
@@ -37,14 +42,22 @@ impl<'a> Job<'a> {
             position_bits,
             mesh,
             positions,
+            method: *stream.get(8)?,
         })
+    }
+
+    /// The same, of which vertices and triangles have to stay in order.
+    pub fn in_order(mut self, has_to: bool) -> Self {
+        if has_to {
+            self.method = SEQUENTIAL;
+        }
+        self
     }
 
     /// The stream with the new positions, in so many bits.
     pub fn encoded(mut self, position_bits: i32) -> Option<Vec<u8>> {
-        let method = *self.stream.get(8)?;
         let mut options = EncoderOptions::new();
-        options.set_encoding_method(i32::from(method));
+        options.set_encoding_method(i32::from(self.method));
         for id in 0..self.mesh.num_attributes() {
             let attribute = self.mesh.try_attribute(id).ok()?;
             if attribute.data_type() != draco_core::DataType::Float32 {
@@ -59,7 +72,7 @@ impl<'a> Job<'a> {
                 options.set_attribute_quantization(id, bits);
             }
         }
-        let speed = self.speed(&options, method)?;
+        let speed = self.speed(&options)?;
         set_speed(&mut options, speed);
         self.place()?;
         let (num_points, num_faces) = (self.mesh.num_points(), self.mesh.num_faces());
@@ -70,8 +83,12 @@ impl<'a> Job<'a> {
     }
 
     /// The effort that gives a stream of a length nearest to the host's.
-    fn speed(&self, options: &EncoderOptions, method: u8) -> Option<i32> {
-        let candidates: &[i32] = if method == 0 { &[10] } else { &[5, 7, 3, 0, 9] };
+    fn speed(&self, options: &EncoderOptions) -> Option<i32> {
+        let candidates: &[i32] = if self.method == SEQUENTIAL {
+            &[10]
+        } else {
+            &[5, 7, 3, 0, 9]
+        };
         if let [only] = candidates {
             return Some(*only);
         }
@@ -90,7 +107,7 @@ impl<'a> Job<'a> {
         let before = values_by_point(&self.mesh, id)?;
         NORMAL_BITS.into_iter().find(|&bits| {
             let mut options = EncoderOptions::new();
-            options.set_encoding_method(0);
+            options.set_encoding_method(i32::from(SEQUENTIAL));
             set_speed(&mut options, 10);
             options.set_attribute_quantization(id, bits);
             let again = encoded(self.mesh.clone(), &options).and_then(|stream| decoded(&stream));

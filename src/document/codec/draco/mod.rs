@@ -419,8 +419,8 @@ fn primitives(root: &Value) -> impl Iterator<Item = (&Value, &Value)> {
     primitives.filter_map(|primitive| Some((primitive, primitive.get("extensions")?.get(NAME)?)))
 }
 
-/// Encodes the primitives whose positions changed, with the method, the effort and the bits that they had. Whether that could be done: not
-/// where something uncompressed follows the order of their vertices.
+/// Encodes the primitives whose positions changed, with the method, the effort and the bits that they had; in sequence where something
+/// uncompressed follows the order of their vertices. Whether that could be done: not where primitives share a stream or its accessors.
 pub(super) fn encode(
     root: &Value,
     plain_root: &Value,
@@ -428,7 +428,7 @@ pub(super) fn encode(
     host: &Host,
     streams: &mut Streams,
 ) -> bool {
-    let mut todo: Vec<(Segment, &Value, Vec<u8>)> = Vec::new();
+    let mut todo: Vec<(Segment, &Value, &Value, &[u8])> = Vec::new();
     for (primitive, extension) in primitives(root) {
         let position = primitive
             .get("attributes")
@@ -442,15 +442,16 @@ pub(super) fn encode(
             .and_then(|view| Segment::of(list(root, "bufferViews").get(view)?));
         match stream {
             Some(stream) if is_alone(root, primitive, extension) => {
-                todo.push((stream, extension, bytes.to_vec()))
+                todo.push((stream, primitive, extension, bytes))
             }
             _ => return false,
         }
     }
     let jobs: Option<Vec<again::Job>> = todo
         .iter()
-        .map(|(stream, extension, bytes)| {
-            again::Job::new(host.segment(root, *stream)?, extension, bytes)
+        .map(|&(stream, primitive, extension, bytes)| {
+            let job = again::Job::new(host.segment(root, stream)?, extension, bytes)?;
+            Some(job.in_order(has_companions(primitive, extension)))
         })
         .collect();
     let Some(jobs) = jobs else { return false };
@@ -465,14 +466,19 @@ pub(super) fn encode(
     true
 }
 
-/// Whether the stream has all that follows the order of a primitive's vertices, and serves no other primitive.
-fn is_alone(root: &Value, primitive: &Value, extension: &Value) -> bool {
+/// Whether the order of a primitive's vertices is that of something beside its stream: of attributes, or of morph targets.
+fn has_companions(primitive: &Value, extension: &Value) -> bool {
     let count = |object: &Value| {
         object
             .get("attributes")
             .and_then(Value::as_object)
             .map_or(0, serde_json::Map::len)
     };
+    count(primitive) != count(extension) || primitive.get("targets").is_some()
+}
+
+/// Whether a stream and its accessors serve one primitive.
+fn is_alone(root: &Value, primitive: &Value, extension: &Value) -> bool {
     let accessors = |primitive: &Value| -> Vec<u64> {
         let attributes = primitive.get("attributes").and_then(Value::as_object);
         let attributes = attributes
@@ -493,8 +499,5 @@ fn is_alone(root: &Value, primitive: &Value, extension: &Value) -> bool {
     let streams = primitives(root)
         .filter(|(_, other)| other.get("bufferView") == view)
         .count();
-    count(primitive) == count(extension)
-        && primitive.get("targets").is_none()
-        && uses == own.len()
-        && streams == 1
+    uses == own.len() && streams == 1
 }

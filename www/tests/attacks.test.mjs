@@ -6,7 +6,8 @@ import { fileURLToPath } from "node:url";
 import * as meshmark from "meshmark";
 import * as attacks from "../app/research-wasm/research.js";
 import { readContract } from "./shape.mjs";
-import { caught, glbOf, repository, validationErrors } from "./support.mjs";
+import { caught, glbOf, repository } from "./support.mjs";
+import { validationErrors } from "./validator.mjs";
 
 const contract = readContract(fileURLToPath(new URL("src/wasm/research.d.ts", repository)));
 let demo;

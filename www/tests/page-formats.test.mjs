@@ -10,12 +10,14 @@ import draco3d from "draco3dgltf";
 import { unzipSync, zipSync } from "fflate";
 import * as meshmark from "meshmark";
 import { MeshoptDecoder, MeshoptEncoder } from "meshoptimizer";
-import { BufferGeometry, Float32BufferAttribute, Mesh } from "three";
+import { BufferGeometry, Float32BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 import { OBJExporter } from "three/addons/exporters/OBJExporter.js";
 import { PLYExporter } from "three/addons/exporters/PLYExporter.js";
 import { STLExporter } from "three/addons/exporters/STLExporter.js";
+import { USDZExporter } from "three/addons/exporters/USDZExporter.js";
 import { button, check, comeToLook, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, result, saved, unseen, view } from "./page.mjs";
 import { OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
+import { as3mf, asDae, asFbx } from "./writers.mjs";
 
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).setLogger(new Logger(Verbosity.ERROR));
 let small;
@@ -116,17 +118,28 @@ unseen("an archive is as good as what is in it", async () => {
   await result().getByText(/“torn\.zip” cannot be unpacked/).waitFor();
 });
 
-/** What three.js's exporters write of a model. */
-async function exported(model) {
+/** The surface of a model of one primitive. */
+async function surfaceOf(model) {
   const document = await io.readBinary(model);
   const [primitive] = document.getRoot().listMeshes()[0].listPrimitives();
+  return { positions: primitive.getAttribute("POSITION").getArray(), indices: primitive.getIndices().getArray() };
+}
+
+/** The same as three.js's exporters take it: Z up, in millimetres. */
+function meshOf({ positions, indices }) {
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new Float32BufferAttribute(primitive.getAttribute("POSITION").getArray(), 3));
-  geometry.setIndex([...primitive.getIndices().getArray()]);
-  const mesh = new Mesh(geometry);
+  geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
+  geometry.setIndex([...indices]);
+  geometry.computeVertexNormals();
+  const mesh = new Mesh(geometry, new MeshStandardMaterial());
   mesh.rotation.x = Math.PI / 2;
   mesh.scale.setScalar(1000);
   mesh.updateMatrixWorld(true);
+  return mesh;
+}
+
+/** What three.js's exporters write of a mesh, and the command line reads too. */
+function exported(mesh) {
   return {
     "copy.stl": Buffer.from(new STLExporter().parse(mesh, { binary: true }).buffer),
     "text.stl": new STLExporter().parse(mesh),
@@ -137,7 +150,7 @@ async function exported(model) {
 }
 
 onPage("suspects in other formats are shown and checked, and not taken for marking", async () => {
-  const files = await exported(marked);
+  const files = exported(meshOf(await surfaceOf(marked)));
   await drop(onDisk("copy.stl", files["copy.stl"]));
   await result().getByText(/“copy\.stl” is a model, but not of glTF\. It can be checked as it is/).waitFor();
   await page.getByRole("tab", { name: "Check" }).click();
@@ -152,6 +165,23 @@ onPage("suspects in other formats are shown and checked, and not taken for marki
   await picture("suspect-ply");
   await drop(onDisk("torn.fbx", "nothing"));
   await result().getByText(/“torn\.fbx” is no \.fbx file that can be read/).waitFor();
+});
+
+unseen("suspects in formats that the page alone reads are checked", async () => {
+  const surface = await surfaceOf(marked);
+  const files = {
+    "copy.3mf": as3mf(surface),
+    "copy.dae": asDae(surface),
+    "copy.fbx": asFbx(surface),
+    "copy.usdz": await new USDZExporter().parseAsync(meshOf(surface)),
+  };
+  await page.getByRole("tab", { name: "Check" }).click();
+  for (const [name, content] of Object.entries(files)) {
+    await drop(onDisk(name, content));
+    await facts().getByText(name, { exact: true }).waitFor();
+    await check();
+    assert.equal(await headline(), "Your mark was found", name);
+  }
 });
 
 unseen("an avatar is marked under its own name", async () => {

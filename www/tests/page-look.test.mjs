@@ -1,8 +1,8 @@
 // How the page looks, by mouse and by keyboard, on large screens and small ones, with a network and without.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { assertFits, assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, NARROW, onDisk, onPage, PHONE, RARELY, context, page, picture, result, view } from "./page.mjs";
-import { glbOf, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { assertFits, assertNamed, button, canvas, comeToLook, drawn, dropped, facts, headline, isSame, looks, mark, NARROW, onDisk, onPage, PHONE, context, page, picture, result, view } from "./page.mjs";
+import { glbOf, OWNER, PASSPHRASE, RARELY, TAG } from "./support.mjs";
 
 onPage("raking light shows the geometry's own normals, whatever seams and normals the file has", async () => {
   const { positions, indices } = torus();

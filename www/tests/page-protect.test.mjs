@@ -5,8 +5,8 @@ import { basename, join } from "node:path";
 import { before } from "node:test";
 import { NodeIO } from "@gltf-transform/core";
 import * as meshmark from "meshmark";
-import { button, check, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, RARELY, result, saved, savedReport, submitted, unseen, view } from "./page.mjs";
-import { assertNoNewErrors, CUBE, glbFromObj, OWNER, PASSPHRASE, sharedModel, smallModel, TAG } from "./support.mjs";
+import { button, check, drop, dropped, facts, fillKey, folder, headline, mark, onDisk, onPage, page, picture, result, saved, savedReport, submitted, unseen, view } from "./page.mjs";
+import { assertNoNewErrors, CUBE, glbFromObj, OWNER, PASSPHRASE, RARELY, sharedModel, smallModel, TAG } from "./support.mjs";
 
 /** The cube as a thin rod: neither its shape nor its connectivity can hold a mark. */
 const ROD = CUBE.replaceAll(/^v (\d) (\d) (\d)$/gm, (_, x, y, z) => `v ${x} ${y / 100} ${z / 100}`);

@@ -36,9 +36,6 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Of tests that are much alike a commit runs one; the others, which have this as their option `skip`, are shown as skipped. */
-export const RARELY = process.env.MESHMARK_ALL ? false : "it runs with cargo xtask test --all";
-
 /** A test with the page just opened. To draw by software what nobody looks at takes seconds: see `unseen`. */
 export function onPage(name, body, { skip = false, ...options } = {}) {
   test(name, { skip }, async (t) => {

@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
-import validator from "gltf-validator";
 import * as meshmark from "meshmark";
 import * as attacks from "../app/research-wasm/research.js";
+import { validationErrors } from "./validator.mjs";
 
 export const repository = new URL("../../", import.meta.url);
 export const packageFolder = new URL("../meshmark/", import.meta.url);
@@ -17,6 +17,9 @@ export const LOADING = ["default", "initSync", "start"];
 export const OWNER = "Test Owner";
 export const PASSPHRASE = "a passphrase for tests only";
 export const TAG = "TEST-42";
+
+/** Of tests that are much alike a commit runs one; the others, which have this as their option `skip`, are shown as skipped. */
+export const RARELY = process.env.MESHMARK_ALL ? false : "it runs with cargo xtask test --all";
 
 /** As an OBJ file. */
 export const CUBE = `
@@ -109,15 +112,6 @@ function glb(json, bin) {
   const u32 = (...values) => Buffer.from(new Uint32Array(values).buffer);
   const length = 12 + 8 + padded.length + 8 + bin.length;
   return new Uint8Array(Buffer.concat([u32(0x46546c67, 2, length, padded.length, 0x4e4f534a), padded, u32(bin.length, 0x004e4942), bin]));
-}
-
-/** Errors that Khronos's validator finds, as `CODE pointer`. */
-export async function validationErrors(model, files = {}) {
-  const report = await validator.validateBytes(model, {
-    externalResourceFunction: (uri) =>
-      files[decodeURIComponent(uri)] ? Promise.resolve(files[decodeURIComponent(uri)]) : Promise.reject(`no file ${uri}`),
-  });
-  return report.issues.messages.filter(({ severity }) => severity === 0).map(({ code, pointer }) => `${code} ${pointer}`);
 }
 
 /** The marked model has no error that its host did not have. */

@@ -72,9 +72,9 @@ impl<'a> Job<'a> {
                 options.set_attribute_quantization(id, bits);
             }
         }
+        self.place()?;
         let speed = self.speed(&options)?;
         set_speed(&mut options, speed);
-        self.place()?;
         let (num_points, num_faces) = (self.mesh.num_points(), self.mesh.num_faces());
         let encoded = encoded(self.mesh, &options)?;
         let again = decoded(&encoded)?;
@@ -82,7 +82,7 @@ impl<'a> Job<'a> {
         (again.num_points() == num_points && again.num_faces() == num_faces).then_some(encoded)
     }
 
-    /// The effort that gives a stream of a length nearest to the host's.
+    /// The effort that gives a stream of a length nearest to the host's: what pays on a surface as it was need not pay on one that was moved.
     fn speed(&self, options: &EncoderOptions) -> Option<i32> {
         let candidates: &[i32] = if self.method == SEQUENTIAL {
             &[10]

@@ -6,12 +6,16 @@ use glam::DVec3;
 /// Triangles in a leaf.
 const LEAF: usize = 4;
 
+/// A tree halves at every node, and of 2^32 triangles, more than names go, is less deep: on the way down there is one open node a level, and one more.
+const DEEPEST: usize = 33;
+
 /// A mesh's triangles in a tree of bounding boxes. Construction O(F log F), a query O(log F) on surfaces that are not folded
 /// all over.
 pub struct Surface<'a> {
     mesh: &'a Mesh,
-    /// The triangles, in the order of the leaves.
+    /// The triangles, in the order of the leaves, and their corners: what is looked at together lies together.
     order: Vec<u32>,
+    corners: Vec<[DVec3; 3]>,
     /// The root first; the first child of an inner node follows it.
     nodes: Vec<Node>,
 }
@@ -78,11 +82,14 @@ impl<'a> Surface<'a> {
                 })
                 .map(|(number, _)| number)
                 .collect(),
+            corners: Vec::new(),
             nodes: Vec::new(),
         };
         if !surface.order.is_empty() {
             surface.grow(0..surface.order.len(), &centres);
         }
+        let corners = |&t: &u32| mesh.corners(mesh.triangles[t as usize]);
+        surface.corners = surface.order.iter().map(corners).collect();
         surface
     }
 
@@ -134,27 +141,32 @@ impl<'a> Surface<'a> {
     /// The same, `None` where it is not nearer than a distance: what is far away is told at once.
     pub fn nearest_within(&self, from: DVec3, within: f64) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;
-        let mut least = within;
-        let mut open = Vec::with_capacity(64);
+        let mut least = within * within;
+        let mut open = [(0.0, 0); DEEPEST];
+        let mut num_open = 0;
         if let Some(root) = self.nodes.first() {
-            open.push((root.distance_squared(from), 0));
+            open[0] = (root.distance_squared(from), 0);
+            num_open = 1;
         }
-        while let Some((square, name)) = open.pop() {
-            if square >= least * least {
+        while num_open > 0 {
+            num_open -= 1;
+            let (square, name) = open[num_open];
+            if square >= least {
                 continue;
             }
             match &self.nodes[name].kind {
                 Kind::Leaf(range) => {
-                    for &triangle in &self.order[range.clone()] {
-                        let corners = self.mesh.corners(self.mesh.triangles[triangle as usize]);
-                        let weights = nearest_weights(from, corners);
-                        let point = (0..3).map(|i| weights[i] * corners[i]).sum::<DVec3>();
-                        let distance = point.distance(from);
-                        if distance < least {
-                            least = distance;
+                    let triangles = self.order[range.clone()].iter();
+                    for (&triangle, corners) in triangles.zip(&self.corners[range.clone()]) {
+                        let weights = nearest_weights(from, *corners);
+                        let [a, b, c] = corners;
+                        let point = weights[0] * a + weights[1] * b + weights[2] * c;
+                        let square = point.distance_squared(from);
+                        if square < least {
+                            least = square;
                             best = Some(Nearest {
                                 point,
-                                distance,
+                                distance: square.sqrt(),
                                 triangle,
                                 weights,
                             });
@@ -167,7 +179,11 @@ impl<'a> Surface<'a> {
                     if children[0].0 < children[1].0 {
                         children.reverse();
                     }
-                    open.extend(children);
+                    // The nearer one is on top.
+                    for child in children.into_iter().filter(|child| child.0 < least) {
+                        open[num_open] = child;
+                        num_open += 1;
+                    }
                 }
             }
         }

@@ -13,3 +13,6 @@ macro_rules! room {
 }
 
 room!(attack carrier code detection digest document evidence geometry key mesh paper progress scene);
+
+#[doc(hidden)]
+pub use crate::watermark::strangers;

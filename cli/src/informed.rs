@@ -68,8 +68,8 @@ impl InformedArguments {
         self.read(
             suspect,
             clock,
-            |suspect, original| compare_overlaid(suspect, original, key),
-            |suspect, record| compare_overlaid_with_record(suspect, record, key),
+            |suspect, original| compare_overlaid(suspect, original, key, None),
+            |suspect, record| compare_overlaid_with_record(suspect, record, key, None),
         )
     }
 

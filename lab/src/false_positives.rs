@@ -251,7 +251,8 @@ pub fn section(title: &str, suspects: Vec<(String, Evidence)>, seed: &Seed, test
     document(title, &names, &ln_ps)
 }
 
-fn document(title: &str, names: &[String], ln_ps: &[Vec<f64>]) -> String {
+/// The tail of ln p over the tests of some suspects.
+pub fn document(title: &str, names: &[String], ln_ps: &[Vec<f64>]) -> String {
     let tests = ln_ps.iter().map(Vec::len).sum::<usize>();
     let mut text = format!(
         "\n## {}\n\n{tests} keys.\n\n\

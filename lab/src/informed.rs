@@ -1,6 +1,7 @@
 //! What the original, or the record of an embedding, adds to a reading: one table, of the attacks that blind reading is weakest in.
 
 use crate::case::{Case, Marked};
+use crate::false_positives;
 use crate::models::{Model, gathered};
 use crate::real::Tool;
 use crate::seed::Seed;
@@ -9,8 +10,9 @@ use meshmark::internals::attack::{chain, crop, remesh, similarity, simplify, ste
 use meshmark::internals::geometry::diagonal;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::to_glb;
+use meshmark::internals::strangers;
 use meshmark::{
-    Comparison, RecordOptions, Shape, Strength, Verdict, compare, compare_with_record, detect,
+    Comparison, Key, RecordOptions, Shape, Strength, Verdict, compare, compare_with_record, detect,
     record,
 };
 use rayon::prelude::*;
@@ -19,15 +21,24 @@ use std::time::Instant;
 /// Length of a side after remeshing, as a fraction of the diagonal.
 const REMESHED: f64 = 0.01;
 
-/// What other people's programs are told, where they are there.
-const TOOLS: [&str; 6] = [
+/// What other people's programs are told, where they are there: to halve a model, and else.
+const HALVING: [&str; 6] = [
     "glTF-Transform simplify --ratio 0.5 --error 1",
     "gltfpack -si 0.5",
+    "meshoptimizer simplify 50%",
+    "MeshLab meshing_decimation_quadric_edge_collapse targetperc=0.5",
+    "Open3D simplify_quadric_decimation target_number_of_triangles=50%",
+    "Blender DECIMATE ratio=0.5",
+];
+const TOOLS: [&str; 4] = [
     "MeshLab apply_coord_laplacian_smoothing",
     "MeshLab compute_normal_per_vertex generate_surface_reconstruction_screened_poisson depth=8",
     "Open3D filter_smooth_laplacian number_of_iterations=3",
     "Open3D filter_smooth_taubin number_of_iterations=10",
 ];
+
+/// Of small models, which rows are of interest: copies as they are, and halved.
+const LOW_POLY: [&str; 4] = ["none", "simplify 50 %", "unmarked", "wrong key"];
 
 type Make = fn(&Case, &Mesh, u64) -> Result<Mesh, String>;
 
@@ -61,7 +72,7 @@ impl Row<'_> {
 }
 
 /// The rows: what is done to the marked mesh.
-const ROWS: [(&str, Make); 19] = [
+const ROWS: [(&str, Make); 20] = [
     ("posed 30 degrees, simplify 50 %", |_, marked, seed| {
         by_name(marked, &["posed 30 degrees", "simplify 50 %"], seed)
     }),
@@ -74,6 +85,9 @@ const ROWS: [(&str, Make); 19] = [
         |case, _, seed| by_name(&case.host, &["posed 30 degrees", "simplify 50 %"], seed),
     ),
     ("none", |_, marked, _| Ok(marked.clone())),
+    ("simplify 50 %", |_, marked, seed| {
+        by_name(marked, &["simplify 50 %"], seed)
+    }),
     (
         "crop 30 %, simplify 50 %, glTF quantize 10 bits",
         |_, marked, seed| {
@@ -211,12 +225,13 @@ impl Said {
 /// Blind, with the original, with the record; `None` where a program did not do what it was told.
 type Cell = Option<[Said; 3]>;
 
-/// Prints the table, row after row: each model once at a strength, under keys of its own.
+/// Prints the table, row after row: each model once at a strength, under keys of its own; of small models only copies that are whole or halved.
 pub fn table(
     models: &[Model],
     (name, strength): (&'static str, Strength),
     seed: &Seed,
     tools: &[Tool],
+    are_low_poly: bool,
 ) -> Result<String, String> {
     let cases = models.par_iter();
     let cases = cases.map(|model| Case::new(model, (name, strength), 0, seed));
@@ -231,8 +246,11 @@ pub fn table(
         names.len(),
         names.join(", "),
     );
-    let tools = tools.iter().filter(|tool| TOOLS.contains(&&*tool.name));
-    let own = ROWS.iter().map(|(name, make)| Row::Own(name, *make));
+    let is_told = |name: &str| HALVING.contains(&name) || !are_low_poly && TOOLS.contains(&name);
+    let tools = tools.iter().filter(|tool| is_told(&tool.name));
+    let own = ROWS.iter();
+    let own = own.filter(|(name, _)| !are_low_poly || LOW_POLY.contains(name));
+    let own = own.map(|(name, make)| Row::Own(name, *make));
     for row in own.chain(tools.map(Row::Tool)) {
         let cells = cases.par_iter().map(|case| cells_of(case, &row));
         let cells = cells.collect::<Result<Vec<Cell>, _>>()?;
@@ -300,4 +318,80 @@ fn cells_of(case: &Case, row: &Row) -> Result<Cell, String> {
     let start = Instant::now();
     let recorded = compare_with_record(&suspect, &kept, &case.key).map_err(said)?;
     Ok(Some([blind, informed, Said::of(&recorded, number, start)]))
+}
+
+/// Keys that one lattice is read with: where it lies takes most of the time of a key, what its points hold little.
+const KEYS_OF_A_LATTICE: u64 = 1000;
+
+/// Lays suspects on their originals, unmarked and marked by another key, whole, in pieces and in another pose, and reads them with so many keys that
+/// marked nothing, evenly; prints the tail of ln p.
+pub fn wrong_keys(
+    models: &[Model],
+    strength: (&'static str, Strength),
+    seed: &Seed,
+    num_keys: u64,
+) -> Result<String, String> {
+    let start = Instant::now();
+    let cases = models.par_iter();
+    let cases = cases.map(|model| Case::new(model, strength, 0, seed));
+    let mut cases = cases.collect::<Result<Vec<_>, _>>()?;
+    cases.retain(|case| case.marked.is_ok());
+    let suspects = cases.par_iter().map(suspects_of);
+    let suspects: Vec<_> = suspects.collect::<Result<Vec<_>, _>>()?.concat();
+    let each = num_keys.div_ceil(suspects.len().max(1) as u64);
+    let purpose = format!("strangers, {}", strength.0);
+    let read = |(number, (case, name, mesh)): (usize, &(&Case, String, Mesh))| {
+        let first = number as u64 * each;
+        let keys: Vec<Key> = (first..first + each)
+            .map(|key| seed.key(&purpose, key))
+            .collect();
+        let lattices = keys.chunks(KEYS_OF_A_LATTICE as usize);
+        let lattices: Vec<Vec<Key>> = lattices.map(<[Key]>::to_vec).collect();
+        let ln_ps = strangers(mesh, &case.model.bytes, &lattices);
+        let ln_ps = ln_ps.map_err(|error| format!("{name}: {error}"))?;
+        eprintln!(
+            "{name}: {} keys, {:.0} s",
+            ln_ps.len(),
+            start.elapsed().as_secs_f64()
+        );
+        Ok((name.clone(), ln_ps))
+    };
+    let read = suspects.par_iter().enumerate().map(read);
+    let (names, ln_ps): (Vec<String>, Vec<Vec<f64>>) = read
+        .collect::<Result<Vec<_>, String>>()?
+        .into_iter()
+        .unzip();
+    let title = format!("With the original, {}, seed {}", strength.0, seed.number);
+    let table = false_positives::document(&title, &names, &ln_ps);
+    Ok(format!("{table}\n{:.0} s.", start.elapsed().as_secs_f64()))
+}
+
+/// What is laid on a model.
+fn suspects_of<'a>(case: &'a Case<'a>) -> Result<Vec<(&'a Case<'a>, String, Mesh)>, String> {
+    let marked = &case.marked.as_ref().map_err(Clone::clone)?.mesh;
+    let by = |mesh: &Mesh, names: &[&str]| by_name(mesh, names, case.seed.number(&case.purpose, 9));
+    let suspects = [
+        ("unmarked", case.host.clone()),
+        ("marked", marked.clone()),
+        (
+            "marked, crop 50 %, simplify 50 %",
+            by(marked, &["crop 50 %", "simplify 50 %"])?,
+        ),
+        (
+            "marked, posed 30 degrees, simplify 50 %",
+            by(marked, &["posed 30 degrees", "simplify 50 %"])?,
+        ),
+        (
+            "posed 30 degrees, unmarked",
+            by(&case.host, &["posed 30 degrees"])?,
+        ),
+    ];
+    let named = suspects.into_iter().map(|(name, mesh)| {
+        (
+            case,
+            format!("{}, {name}", case.model.name),
+            similarity(&mesh, case.seed.number(&case.purpose, 10)),
+        )
+    });
+    Ok(named.collect())
 }

@@ -91,7 +91,7 @@ struct Arguments {
     adversary: bool,
     /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table. Of plain models, or
     /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.
-    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = ["full"])]
+    #[arg(long, value_name = "STRENGTH", groups = ["instead", "keyed"], conflicts_with_all = ["full"])]
     informed: Option<String>,
     /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
     #[arg(long, group = "instead", conflicts_with_all = GRID)]
@@ -108,11 +108,14 @@ struct Arguments {
     local: Option<u64>,
     /// Instead of the grid: generated scenes of several objects, of which one is taken out, and plain models beside other things; or the
     /// scenes in a folder; prints tables.
-    #[arg(long, value_name = "FOLDER", num_args = 0..=1, group = "instead", conflicts_with_all = GRID)]
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, groups = ["instead", "keyed"], conflicts_with_all = GRID)]
     scenes: Option<Option<PathBuf>>,
-    /// Of --scenes: instead of its tables, so many keys that marked nothing; prints a table.
-    #[arg(long, value_name = "N", requires = "scenes")]
+    /// Of --scenes and --informed: instead of their tables, so many keys that marked nothing; prints a table.
+    #[arg(long, value_name = "N", requires = "keyed")]
     wrong_keys: Option<u64>,
+    /// Of --informed: models of 200 to 1000 vertices alone, whole and halved.
+    #[arg(long, requires = "informed")]
+    low_poly: bool,
     /// Of --wild and --local: subtle, balanced, strong, or a fraction of the diagonal.
     #[arg(long, default_value = "balanced")]
     strength: Strength,
@@ -130,6 +133,8 @@ const STRENGTHS: [(&str, Strength); 3] = [
 
 /// Vertices without which a file is not read with the original: low-poly models are.
 const FEWEST_INFORMED: usize = 200;
+/// Models of more vertices are not low-poly.
+const MOST_LOW_POLY: usize = 1000;
 
 /// Keys that the study's errors are averaged over.
 const STUDY_KEYS: u32 = 2;
@@ -205,13 +210,28 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             Some(folder) => models::of_folder(folder, FEWEST_INFORMED)?,
             None => {
                 let (mut models, _) = models::all(None)?;
-                models.retain(|model| model.class == models::Class::Plain);
+                models.retain(|model| arguments.low_poly || model.class == models::Class::Plain);
                 models
             }
         };
+        if arguments.low_poly {
+            models.retain(|model| {
+                models::gathered(&model.bytes)
+                    .is_ok_and(|mesh| mesh.positions.len() <= MOST_LOW_POLY)
+            });
+        }
         models.retain(|model| model.size <= most);
+        if let Some(num_keys) = arguments.wrong_keys {
+            return informed::wrong_keys(&models, strength, &Seed::new(seed), num_keys);
+        }
         let tools = real_tools(arguments, &target)?;
-        return informed::table(&models, strength, &Seed::new(seed), &tools);
+        return informed::table(
+            &models,
+            strength,
+            &Seed::new(seed),
+            &tools,
+            arguments.low_poly,
+        );
     }
     if arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;

@@ -166,6 +166,23 @@ impl Carrier {
         }
     }
 
+    /// The same of a mesh that lies on a host, and was read there: how it was turned and stretched is known, if the host has axes that say so.
+    pub(crate) fn read_beside(
+        self,
+        mesh: &Mesh,
+        host: &Mesh,
+        key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        match self {
+            Carrier::Solid if solid::has_axes(host) => solid::Suspect::new(mesh)
+                .known_to_lie()
+                .read_until(key, is_settled, progress),
+            _ => self.read_until(mesh, key, is_settled, progress),
+        }
+    }
+
     /// The same of a mesh as it is, in its own frame.
     pub(crate) fn read_at_once(
         self,

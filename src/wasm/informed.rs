@@ -1,11 +1,11 @@
 //! Reading with the original or with a record.
 
-use super::marks::{key_from, surface_from};
+use super::marks::{expected_from, key_from, surface_from};
 use super::options::Options;
 use super::statement::stated;
 use super::{argument, encoded, files_from, set, thrown};
 use crate::watermark::{self, Comparison, Error, Illustration, Overlay, RecordOptions, Sheet};
-use crate::{Finding, Key, Model, Surface};
+use crate::{Finding, Key, Model, Payload, Surface};
 use js_sys::{Float32Array, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -20,6 +20,7 @@ pub fn compare(
     let known = [
         "files",
         "originalFiles",
+        "expected",
         "details",
         "overlay",
         "statement",
@@ -34,7 +35,7 @@ pub fn compare(
         .with_progress(&mut listener);
     let original = Model::new(original).with_files(&of_original);
     told(
-        watermark::compare_overlaid(suspect, original, &key),
+        watermark::compare_overlaid(suspect, original, &key, asked.expected),
         &key,
         &asked,
     )
@@ -51,6 +52,7 @@ pub fn compare_mesh(
 ) -> Result<JsValue, JsValue> {
     let known = [
         "originalFiles",
+        "expected",
         "details",
         "overlay",
         "statement",
@@ -64,7 +66,7 @@ pub fn compare_mesh(
     let suspect = Surface::new(positions, triangles).with_progress(&mut listener);
     let original = Model::new(original).with_files(&of_original);
     told(
-        watermark::compare_overlaid(suspect, original, &key),
+        watermark::compare_overlaid(suspect, original, &key, asked.expected),
         &key,
         &asked,
     )
@@ -78,14 +80,21 @@ pub fn compare_with_record(
     key: &[u8],
     options: JsValue,
 ) -> Result<JsValue, JsValue> {
-    let known = ["files", "details", "overlay", "statement", "onProgress"];
+    let known = [
+        "files",
+        "expected",
+        "details",
+        "overlay",
+        "statement",
+        "onProgress",
+    ];
     let options = Options::new(options, &known)?;
     let (key, asked) = (key_from(key)?, Asked::of(&options)?);
     let (files, mut listener) = (options.files("files")?, options.listener()?);
     let suspect = Model::new(suspect)
         .with_files(&files)
         .with_progress(&mut listener);
-    let comparison = watermark::compare_overlaid_with_record(suspect, record, &key);
+    let comparison = watermark::compare_overlaid_with_record(suspect, record, &key, asked.expected);
     told(comparison, &key, &asked)
 }
 
@@ -109,8 +118,9 @@ pub fn record(
     watermark::record_of(&model, &marking, &key_from(key)?, &named).map_err(thrown)
 }
 
-/// What is wanted beside the comparison.
+/// What is looked for, and what is wanted beside the comparison.
 struct Asked {
+    expected: Option<Payload>,
     details: bool,
     overlay: bool,
     statement: JsValue,
@@ -119,6 +129,7 @@ struct Asked {
 impl Asked {
     fn of(options: &Options) -> Result<Asked, JsValue> {
         Ok(Asked {
+            expected: expected_from(options)?,
             details: options.is_set("details")?,
             overlay: options.is_set("overlay")?,
             statement: options.get("statement"),

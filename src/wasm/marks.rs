@@ -233,7 +233,7 @@ fn payload_from(value: &JsValue) -> Result<Payload, JsValue> {
 }
 
 /// The payload that is looked for, if one is.
-fn expected_from(options: &Options) -> Result<Option<Payload>, JsValue> {
+pub(super) fn expected_from(options: &Options) -> Result<Option<Payload>, JsValue> {
     let expected = options.get("expected");
     match expected.is_undefined() {
         true => Ok(None),

@@ -362,6 +362,11 @@ export interface Tracing {
 
 /** Of every comparison. */
 export interface ComparingOptions {
+  /**
+   * The payload that has to be there: it alone is charged, and not all payloads, so less has to be left of the mark. Where the copy has another
+   * one of the key, the verdict is `partial` and `number` names it. It must not come from the suspect. Default: whatever is there is read.
+   */
+  expected?: Payload | undefined;
   /** Whether `lnP` is told where nothing is found too. Default: false. It follows the key: for the key's owner. */
   details?: boolean | undefined;
   /** Whether the suspect is laid on the original, to be looked at. Default: false. Its `evidence` follows the key: for the key's owner. */
@@ -418,7 +423,7 @@ export interface Comparison {
   shape: "same" | "other";
   /** Both in words. */
   sentence: string;
-  /** The payload as a tag and as a number, where it is found. */
+  /** The payload as a tag and as a number, where it is found; where another one was expected than is there, that other one. */
   tag: string | null;
   number: number | null;
   /** What told of the mark, where it is found or present: the surface, the vertices that were kept, or the suspect alone. */

@@ -11,7 +11,8 @@ use crate::carrier::{Carrier, Frames, Host, Reading, Seen, Way};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE};
 use crate::document::Document;
 use crate::geometry::{
-    LEAST_NEAR, Leeway, Motion, Observation, Original, Registration, Search, Shown, Views, kept,
+    Assembly, LEAST_NEAR, Leeway, Motion, Observation, Original, Registration, Search, Shown,
+    Views, kept,
 };
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -57,7 +58,8 @@ pub fn verify_with_original<'a, 'b>(
     Ok(compare_in(suspect.into(), &original.into(), key, Some(expected))?.comparison)
 }
 
-/// As [`compare`], with the suspect laid on the original, to be looked at; `None` for another shape.
+/// As [`compare`], or as [`verify_with_original`] where a payload is expected, with the suspect laid on the original, to be looked at; `None` for
+/// another shape.
 ///
 /// # Errors
 /// As [`compare`].
@@ -65,8 +67,9 @@ pub fn compare_overlaid<'a, 'b>(
     suspect: impl Into<Suspect<'a>>,
     original: impl Into<Model<'b>>,
     key: &Key,
+    expected: Option<Payload>,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    Ok(compare_in(suspect.into(), &original.into(), key, None)?.overlaid())
+    Ok(compare_in(suspect.into(), &original.into(), key, expected)?.overlaid())
 }
 
 /// A comparison, and what it was of.
@@ -137,10 +140,32 @@ impl Informed {
     ) -> Result<Compared, Error> {
         let blind = match self.heard.ln_p_payload <= LN_P_FOUND {
             true => None,
-            false => Some(read_blind(&self.suspect, key, expected, &mut suspect)?),
+            false => Some(self.read_blind(key, expected, &mut suspect)?),
         };
         suspect.step(Stage::Test, 1.0)?;
         Ok(self.concluded(blind))
+    }
+
+    /// Reads without the original, at half of the probability of a false alarm.
+    fn read_blind(
+        &self,
+        key: &Key,
+        expected: Option<Payload>,
+        progress: &mut dyn Progress,
+    ) -> Result<Blind, Error> {
+        let judge = Judge::new(key, expected, Input::Model).one_of(2);
+        let mut readings = Carrier::STANDARD.map(|_| Default::default());
+        let lies = self.heard.first.is_some_and(|lay| lay.lies());
+        for carrier in Carrier::QUICKEST_FIRST {
+            let is_settled = |reading: &Reading| judge.is_settled(reading);
+            readings[carrier as usize] = match lies {
+                true => {
+                    carrier.read_beside(&self.suspect, &self.original, key, &is_settled, progress)
+                }
+                false => carrier.read_until(&self.suspect, key, &is_settled, progress),
+            }?;
+        }
+        Ok(Blind::of(&judge.conclude(&readings)))
     }
 
     /// What is said of it. Of a suspect that was taken apart, what is shown is the parts where they lie.
@@ -228,8 +253,15 @@ pub(super) struct Lay {
     pub covered: f64,
 }
 
+impl Lay {
+    /// Whether the suspect lies there, and not only better than elsewhere.
+    fn lies(&self) -> bool {
+        self.registration.near >= LEAST_NEAR
+    }
+}
+
 /// The same, and what is seen of it.
-struct Lying<'a> {
+pub(super) struct Lying<'a> {
     registration: Registration,
     num_parts: usize,
     shown: Shown<'a>,
@@ -293,6 +325,142 @@ impl<'a> Ears<'a> {
     }
 }
 
+/// Where a suspect may lie on an original: search after search, and taken apart. Knows no key.
+///
+/// What lies there for the most part, but not as a whole, is taken apart at once, and where that explains it, no mirror image of a piece is searched for; what
+/// lies less well is taken apart at last.
+pub(super) struct Searches<'a> {
+    original: &'a Original<'a>,
+    suspect: &'a Mesh,
+    searches: std::slice::Iter<'static, Search>,
+    starts: Vec<Registration>,
+    is_whole: bool,
+    /// Whether parts explain it.
+    is_explained: bool,
+    is_over: bool,
+}
+
+/// What a search found.
+pub(super) enum Found {
+    /// Ways in which the whole may lie, the likeliest first, of those that are worth reading.
+    Whole(Vec<Registration>),
+    /// Parts, each where it lies.
+    Apart(Assembly),
+}
+
+impl<'a> Searches<'a> {
+    pub(super) fn new(original: &'a Original<'a>, suspect: &'a Mesh) -> Searches<'a> {
+        Searches {
+            original,
+            suspect,
+            searches: Search::ALL.iter(),
+            starts: Vec::new(),
+            is_whole: true,
+            is_explained: false,
+            is_over: false,
+        }
+    }
+
+    /// How much of the suspect lies there in the best way.
+    fn near(&self) -> f64 {
+        let nears = self.starts.iter().map(|start| start.near);
+        nears.fold(0.0, f64::max)
+    }
+
+    fn apart(&mut self) -> Option<Found> {
+        self.is_whole = false;
+        let near = self.near();
+        let may_have_parts =
+            near < SURE && (near >= LEAST_APART || Original::has_large_parts(self.suspect));
+        if !may_have_parts {
+            return None;
+        }
+        let assembly = self.original.assembled(self.suspect, &self.starts)?;
+        self.is_explained = assembly.registration.near >= SURE;
+        Some(Found::Apart(assembly))
+    }
+}
+
+impl Iterator for Searches<'_> {
+    type Item = Found;
+
+    fn next(&mut self) -> Option<Found> {
+        if self.is_over {
+            return None;
+        }
+        let is_mostly_there = self.is_whole && (LEAST_NEAR..SURE).contains(&self.near());
+        if is_mostly_there && let Some(found) = self.apart() {
+            return Some(found);
+        }
+        let needed = |search: &&Search| !(self.is_explained && **search == Search::Mirrored);
+        let Some(search) = self.searches.next().filter(needed) else {
+            return if self.is_whole { self.apart() } else { None };
+        };
+        let registrations = self.original.registrations(self.suspect, *search);
+        self.starts.extend(&registrations);
+        let near = registrations.into_iter().filter(|r| r.near >= LEAST_READ);
+        Some(Found::Whole(near.collect()))
+    }
+}
+
+/// The same with what is seen of the suspect in each way. A whole copy that lies there so well lies nowhere else.
+pub(super) struct Lyings<'a> {
+    searches: Searches<'a>,
+    views: &'a Views,
+    is_first: bool,
+    /// The parts where they lie, where it was taken apart.
+    assembled: Option<Mesh>,
+}
+
+impl<'a> Lyings<'a> {
+    pub(super) fn new(
+        original: &'a Original<'a>,
+        views: &'a Views,
+        suspect: &'a Mesh,
+    ) -> Lyings<'a> {
+        Lyings {
+            searches: Searches::new(original, suspect),
+            views,
+            is_first: true,
+            assembled: None,
+        }
+    }
+}
+
+impl<'a> Iterator for Lyings<'a> {
+    type Item = Vec<Lying<'a>>;
+
+    fn next(&mut self) -> Option<Vec<Lying<'a>>> {
+        let at = (self.searches.original, self.views);
+        let suspect = self.searches.suspect;
+        let found: Vec<Lying> = match self.searches.next()? {
+            Found::Whole(registrations) => {
+                let registrations = registrations.into_iter();
+                let lying = |r: Registration| Lying::new(at, (suspect, &r.motion), r, 1);
+                registrations.filter_map(lying).collect()
+            }
+            Found::Apart(Assembly {
+                mesh,
+                num_parts,
+                registration,
+            }) => {
+                let parts = (&mesh, &Motion::IDENTITY);
+                let lying = Lying::new(at, parts, registration, num_parts);
+                self.assembled = Some(mesh);
+                lying.into_iter().collect()
+            }
+        };
+        let is_first = self.is_first;
+        self.is_first &= found.is_empty();
+        if is_first {
+            let is_sure =
+                |lying: &Lying| lying.registration.exact > SURE && lying.shown.covered() > SURE;
+            self.searches.is_over |= found.first().is_some_and(is_sure);
+        }
+        Some(found)
+    }
+}
+
 /// Reads with the original, search after search, until it is sure.
 fn hear(
     host: &Host,
@@ -309,8 +477,12 @@ fn hear(
     let mut ears = Ears::new(Scales::new(key).expecting(expected), loudest);
     let mut first: Option<Lay> = None;
     let mut lyings: Vec<Lying> = Vec::new();
-    let mut read = |new: &[Lying], known: usize, progress: &mut dyn Progress| {
-        let observe: Vec<_> = new.iter().flat_map(views_of).collect();
+    let mut searched = Lyings::new(&original, &views, suspect);
+    for new in &mut searched {
+        let known = lyings.len();
+        first = nearer(first, &new);
+        lyings.extend(new);
+        let observe: Vec<_> = lyings[known..].iter().flat_map(views_of).collect();
         let seen: Vec<&Seen> = observe.iter().map(|observe| &**observe).collect();
         let mut is_settled = false;
         if !seen.is_empty() {
@@ -321,45 +493,11 @@ fn hear(
                 is_settled
             })?;
         }
-        Ok::<bool, Error>(is_settled || ears.are_loud())
-    };
-    let mut starts = Vec::new();
-    let mut is_done = false;
-    for search in Search::ALL {
-        let known = lyings.len();
-        let registrations = original.registrations(suspect, search);
-        starts.extend(&registrations);
-        let near = registrations.into_iter().filter(|r| r.near >= LEAST_READ);
-        let at = (&original, &views);
-        lyings.extend(near.filter_map(|r| Lying::new(at, (suspect, &r.motion), r, 1)));
-        let new = &lyings[known..];
-        first = nearer(first, new);
-        let is_sure = |lying: &Lying| {
-            lying.registration.exact > SURE && lying.shown.covered() > SURE && known == 0
-        };
-        is_done = read(new, known, progress)? || new.first().is_some_and(is_sure);
-        if is_done {
+        if is_settled || ears.are_loud() {
             break;
         }
     }
-    let mut assembled = None;
-    if !is_done
-        && is_to_be_taken_apart(suspect, &starts)
-        && let Some(assembly) = original.assembled(suspect, &starts)
-    {
-        let known = lyings.len();
-        let parts = (&assembly.mesh, &Motion::IDENTITY);
-        let (registration, num_parts) = (assembly.registration, assembly.num_parts);
-        lyings.extend(Lying::new(
-            (&original, &views),
-            parts,
-            registration,
-            num_parts,
-        ));
-        first = nearer(first, &lyings[known..]);
-        read(&lyings[known..], known, progress)?;
-        assembled = Some(assembly.mesh);
-    }
+    let assembled = searched.assembled;
     let scales = ears.scales.conclude();
     Ok(Heard {
         other: scales.other,
@@ -379,14 +517,8 @@ fn hear(
 
 /// What each search is charged: a half of the probability is for reading without the original; and each search, and the parts of a suspect that is taken
 /// apart, share the other half, whether they are made or not.
-fn ln_num_searches() -> f64 {
+pub(super) fn ln_num_searches() -> f64 {
     LN_2 + libm::log(Search::ALL.len() as f64 + 1.0)
-}
-
-/// Whether a suspect may have parts that lie in ways of their own, by how it lies as a whole.
-pub(super) fn is_to_be_taken_apart(suspect: &Mesh, starts: &[Registration]) -> bool {
-    let near = starts.iter().map(|start| start.near).fold(0.0, f64::max);
-    near < SURE && (near >= LEAST_APART || Original::has_large_parts(suspect))
 }
 
 fn nearer(first: Option<Lay>, new: &[Lying]) -> Option<Lay> {
@@ -398,27 +530,11 @@ fn nearer(first: Option<Lay>, new: &[Lying]) -> Option<Lay> {
 }
 
 /// The two ways to look at a suspect that lies on the original: at its surface, and at the vertices that it kept.
-fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
+pub(super) fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
     [
         Box::new(|radius| lying.shown.observations(radius)),
         Box::new(|_| lying.kept.clone().unwrap_or_default()),
     ]
-}
-
-/// Reads without the original, at half of the probability of a false alarm.
-pub(super) fn read_blind(
-    mesh: &Mesh,
-    key: &Key,
-    expected: Option<Payload>,
-    progress: &mut dyn Progress,
-) -> Result<Blind, Error> {
-    let judge = Judge::new(key, expected, Input::Model).one_of(2);
-    let mut readings = Carrier::STANDARD.map(|_| Default::default());
-    for carrier in Carrier::QUICKEST_FIRST {
-        let is_settled = |reading: &Reading| judge.is_settled(reading);
-        readings[carrier as usize] = carrier.read_until(mesh, key, &is_settled, progress)?;
-    }
-    Ok(Blind::of(&judge.conclude(&readings)))
 }
 
 pub(super) struct Blind {
@@ -472,7 +588,7 @@ pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
     };
     let is_read = is_said(verdict) && witness != Witness::Blind;
     let lay = if is_read { heard.read } else { heard.first };
-    let is_same = is_read || lay.is_some_and(|lay| lay.registration.near >= LEAST_NEAR);
+    let is_same = is_read || lay.is_some_and(|lay| lay.lies());
     let shape = if is_same { Shape::Same } else { Shape::Other };
     Comparison {
         verdict,
@@ -509,6 +625,3 @@ fn sentence(verdict: Verdict, shape: Shape) -> &'static str {
         (_, Shape::Other) => "This is another shape than the original, and your mark is not in it.",
     }
 }
-
-#[cfg(test)]
-mod tests;

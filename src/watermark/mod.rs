@@ -24,6 +24,7 @@ mod read_back;
 mod record;
 mod report;
 mod statement;
+mod strangers;
 mod suspect;
 mod testimony;
 mod trace;
@@ -57,6 +58,7 @@ pub use report::{
     Shape, Unshown, Verdict, Witness,
 };
 pub use statement::{Finding, Ledger, StatedFile, Statement};
+pub use strangers::strangers;
 pub use suspect::{Surface, Suspect};
 pub use trace::{
     Traced, Tracing, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,

@@ -3,7 +3,7 @@
 //! What may be seen is in clear; what a reading takes is sealed under the key, together with a check of what is in clear.
 
 use super::compare::{
-    Compared, Ears, Heard, Informed, Lay, is_to_be_taken_apart, options_of_original, with_host,
+    Compared, Ears, Found, Heard, Informed, Lay, Searches, options_of_original, with_host,
 };
 use super::loudest::Loudest;
 use super::overlay::Overlay;
@@ -14,7 +14,7 @@ use crate::attack::simplify_to;
 use crate::bits::Payload;
 use crate::carrier::{Frames, Recorded, StoredError, take};
 use crate::document::Document;
-use crate::geometry::{Motion, Original, Search};
+use crate::geometry::{Motion, Original};
 use crate::key::Key;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stage};
@@ -33,7 +33,6 @@ const MAGIC: &[u8; 4] = b"MMRC";
 const FACES: usize = 1200;
 /// The shape's coordinates are whole numbers up to this, along the longest side of its box.
 const GRID: f64 = 65_535.0;
-const LEAST_READ: f64 = 0.5;
 
 /// What a caller may add to a record.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -184,8 +183,8 @@ pub fn verify_with_record<'a>(
     Ok(compare_in(suspect.into(), record, key, Some(expected))?.comparison)
 }
 
-/// As [`compare_with_record`], with the suspect laid on the recorded shape, to be looked at; `None` for another shape. Where they differ by less
-/// than a record's few triangles show, it is the record that differs.
+/// As [`compare_with_record`], or as [`verify_with_record`] where a payload is expected, with the suspect laid on the recorded shape, to be looked at;
+/// `None` for another shape. Where they differ by less than a record's few triangles show, it is the record that differs.
 ///
 /// # Errors
 /// As [`compare_with_record`].
@@ -193,8 +192,9 @@ pub fn compare_overlaid_with_record<'a>(
     suspect: impl Into<Suspect<'a>>,
     record: &str,
     key: &Key,
+    expected: Option<Payload>,
 ) -> Result<(Comparison, Option<Overlay>), Error> {
-    Ok(compare_in(suspect.into(), record, key, None)?.overlaid_on_record())
+    Ok(compare_in(suspect.into(), record, key, expected)?.overlaid_on_record())
 }
 
 fn compare_in(
@@ -248,39 +248,34 @@ fn hear(
         });
         is_settled || ears.are_loud()
     };
-    let mut starts = Vec::new();
-    let mut is_settled = false;
-    for search in Search::ALL {
+    let mut assembled = None;
+    for found in Searches::new(&original, suspect) {
         crate::progress::step(progress, Stage::Test, 0.0)?;
         let known = lays.len();
-        let registrations = original.registrations(suspect, search);
-        starts.extend(&registrations);
-        let near = registrations.into_iter().filter(|r| r.near >= LEAST_READ);
-        lays.extend(near.map(|registration| Lay {
-            registration,
-            num_parts: 1,
-            covered: original.covered_by(suspect, &registration.motion),
-        }));
-        let new = lays[known..].iter();
-        let motions: Vec<Motion> = new.map(|lay| lay.registration.motion).collect();
-        is_settled = read(suspect, &motions, known);
+        let is_settled = match found {
+            Found::Whole(registrations) => {
+                let motions: Vec<Motion> = registrations.iter().map(|r| r.motion).collect();
+                lays.extend(registrations.into_iter().map(|registration| Lay {
+                    registration,
+                    num_parts: 1,
+                    covered: original.covered_by(suspect, &registration.motion),
+                }));
+                read(suspect, &motions, known)
+            }
+            Found::Apart(assembly) => {
+                lays.push(Lay {
+                    registration: assembly.registration,
+                    num_parts: assembly.num_parts,
+                    covered: original.covered_by(&assembly.mesh, &Motion::IDENTITY),
+                });
+                let is_settled = read(&assembly.mesh, &[Motion::IDENTITY], known);
+                assembled = Some(assembly.mesh);
+                is_settled
+            }
+        };
         if is_settled {
             break;
         }
-    }
-    let mut assembled = None;
-    if !is_settled
-        && is_to_be_taken_apart(suspect, &starts)
-        && let Some(assembly) = original.assembled(suspect, &starts)
-    {
-        let known = lays.len();
-        lays.push(Lay {
-            registration: assembly.registration,
-            num_parts: assembly.num_parts,
-            covered: original.covered_by(&assembly.mesh, &Motion::IDENTITY),
-        });
-        read(&assembly.mesh, &[Motion::IDENTITY], known);
-        assembled = Some(assembly.mesh);
     }
     let by_near = |a: &&Lay, b: &&Lay| a.registration.near.total_cmp(&b.registration.near);
     let scales = ears.scales.conclude();

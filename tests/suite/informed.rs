@@ -135,7 +135,7 @@ fn informed_takes_apart_what_lies_in_several_ways() {
         ("put together", kit),
     ] {
         let suspect = to_glb(&similarity(&suspect, 5));
-        let (answer, overlay) = compare_overlaid(&suspect, &original, &key(1)).unwrap();
+        let (answer, overlay) = compare_overlaid(&suspect, &original, &key(1), None).unwrap();
         assert_found(&answer, name);
         let overlay = overlay.unwrap();
         let all = overlay.additions.len() as f64;
@@ -190,7 +190,7 @@ fn informed_lays_a_piece_on_its_original() {
     let (original, marked, mesh) = case();
     let piece = simplify(&crop(&mesh, 0.3, 3), 0.5);
     let piece = to_glb(&similarity(&piece, 4));
-    let (answer, overlay) = compare_overlaid(&piece, &original, &key(1)).unwrap();
+    let (answer, overlay) = compare_overlaid(&piece, &original, &key(1), None).unwrap();
     assert_found(&answer, "overlaid");
     assert_eq!(answer, compare(&piece, &original, &key(1)).unwrap());
     let overlay = overlay.unwrap();
@@ -207,7 +207,7 @@ fn informed_lays_a_piece_on_its_original() {
     assert!(mean > 0.1, "{mean}");
     let mut cut = evidence.iter().zip(&overlay.differences);
     assert!(cut.all(|(e, d)| d.is_finite() || *e == 0.0));
-    let wrong = compare_overlaid(&marked.model, &original, &key(2))
+    let wrong = compare_overlaid(&marked.model, &original, &key(2), None)
         .unwrap()
         .1;
     let wrong = wrong.unwrap();
@@ -215,7 +215,9 @@ fn informed_lays_a_piece_on_its_original() {
     assert!(wrong.differences.iter().all(|d| *d < 0.01));
     let other = to_glb(&shapes::torus_knot(60, 20));
     assert_eq!(
-        compare_overlaid(&other, &original, &key(1)).unwrap().1,
+        compare_overlaid(&other, &original, &key(1), None)
+            .unwrap()
+            .1,
         None
     );
 }

@@ -36,6 +36,27 @@ test("a marked copy is found with the original and with the record, and results 
   assert.throws(() => meshmark.compareWithRecord(embedding.model, "{}", key), { code: "record.not-a-record" });
 });
 
+test("an expected payload alone is charged, and one that is not there is not found", () => {
+  const record = meshmark.record(original, embedding.report, key);
+  const { positions, triangles } = meshmark.compare(embedding.model, original, key, { overlay: true }).overlay.suspect;
+  const ways = [
+    (options) => meshmark.compare(embedding.model, original, key, options),
+    (options) => meshmark.compareMesh(Float64Array.from(positions), triangles, original, key, options),
+    (options) => meshmark.compareWithRecord(embedding.model, record, key, options),
+  ];
+  for (const compare of ways) {
+    const [read, right, byNumber, wrong] = [{}, { expected: "TEST-42" }, { expected: embedding.report.number }, { expected: "OTHER" }].map(compare);
+    assert.deepEqual(contract.differences("Comparison", right), []);
+    assert.deepEqual([right.verdict, right.tag], ["found", "TEST-42"]);
+    // 2^48 payloads are not guessed; five tests are charged where an expected one is held against the suspect, and three else.
+    assert.ok(Math.abs(read.lnP - right.lnP - (48 * Math.LN2 - Math.log(5 / 3))) < 1e-6, `${read.lnP}, ${right.lnP}`);
+    assert.equal(byNumber.lnP, right.lnP);
+    assert.deepEqual([wrong.verdict, wrong.tag], ["partial", "TEST-42"]);
+    assert.match(wrong.sentence, /another payload/);
+    assert.throws(() => compare({ expected: "a tag that is too long" }), { code: /^payload\./ });
+  }
+});
+
 test("what is seen of a comparison, and its statement, come where they are asked for", () => {
   const statement = { owner: "Ada", date: "today", files: [{ role: "Suspect", name: "<b>.glb", bytes: 1, sha256: "00" }], commands: ["meshmark extract it"] };
   const comparison = meshmark.compare(embedding.model, original, key, { overlay: true, statement });

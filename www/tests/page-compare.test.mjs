@@ -101,6 +101,23 @@ onPage("a record that is dropped stands for the original", async () => {
   assert.equal((await savedReport()).record, "rock.meshmark.json");
 });
 
+unseen("a tag that is looked for is tested with the original, and another one is named", async () => {
+  await open(piece, "piece.glb");
+  await give("rock.glb", original);
+  await page.getByLabel("Tag to look for").fill(TAG);
+  await check();
+  assert.equal(await headline(), "Your mark was found");
+  await result().getByText(`looked at for the tag ${TAG}.`).waitFor();
+  assert.match(await answer("Is your mark in it?"), /^Yes, with the tag TEST-42/);
+  const report = await savedReport();
+  assert.deepEqual([report.expected, report.result.tag], [TAG, TAG]);
+  assert.ok(readFileSync(await saved("Save report (HTML)"), "utf8").includes(`meshmark verify piece.glb --tag ${TAG}`));
+  await page.getByLabel("Tag to look for").fill("OTHER");
+  await check();
+  assert.equal(await headline(), `Your key’s mark, with tag ${TAG}, not OTHER`);
+  assert.match(await answer("Is your mark in it?"), /^Yes, with the tag TEST-42/);
+});
+
 unseen("the mark and the shape are two answers: an unmarked copy, and another shape", async () => {
   await open(original);
   await give("rock.glb", original);

@@ -147,12 +147,13 @@ impl<'a> Frames<'a> {
                     frame,
                     placement,
                     response: Response::new(frame, &placement, &active, self.host.hidden),
+                    held: held(&lattice, &active),
                     active,
                     ln_num_ways: libm::log((candidates.len() * WAYS) as f64) + frame.ln_num_shares,
                 });
             }
         }
-        Reader { lattice, laid }
+        Reader { laid }
     }
 }
 
@@ -161,14 +162,22 @@ const WAYS: usize = STEPS.len() * NOISES.len();
 
 /// A key's lattice, laid through an original's frames.
 pub struct Reader<'a> {
-    lattice: Lattice,
     laid: Vec<Laid<'a>>,
+}
+
+/// What each of some windows holds: its dither, and its symbol.
+type Held = Vec<(f64, Symbol)>;
+
+fn held(lattice: &Lattice, windows: &[Window]) -> Held {
+    let windows = windows.iter();
+    windows.map(|window| lattice.at(window.index)).collect()
 }
 
 struct Laid<'a> {
     frame: &'a Frame,
     placement: Placement,
     active: Vec<Window>,
+    held: Held,
     response: Response<'a>,
     ln_num_ways: f64,
 }
@@ -182,40 +191,46 @@ impl Reader<'_> {
         progress: &mut dyn Progress,
         visit: &mut dyn FnMut(Way) -> bool,
     ) -> Result<(), Cancelled> {
-        self.respond(seen, progress, &mut |laid, list, responses| {
-            let way = |step| laid.way(&self.lattice, responses, step, (list, seen));
+        self.respond(seen, progress, &mut |number, list, responses| {
+            let laid = &self.laid[number];
+            let way = |step| laid.way(&laid.held, responses, step, (list, seen));
             STEPS.into_iter().map(way).any(&mut *visit)
         })
     }
 
-    /// The same with what points of this key's lattice hold of other keys: responses depend on where it lies, and on nothing else of a key.
-    #[cfg(test)]
-    pub(crate) fn read_as(
+    /// The same with what the points of this key's lattice would hold under other keys: responses depend on where it lies, and on nothing else of a
+    /// key. Calls `visit` with the number of the key, and each way.
+    pub fn read_as(
         &self,
         seen: &[&Seen],
-        place: &Key,
         others: &[Key],
+        progress: &mut dyn Progress,
         visit: &mut dyn FnMut(usize, Way),
     ) -> Result<(), Cancelled> {
-        let lattices = others.iter();
-        let lattices: Vec<Lattice> = lattices.map(|o| Lattice::of(place).holding(o)).collect();
-        let mut progress = crate::progress::ignore;
-        self.respond(seen, &mut progress, &mut |laid, list, responses| {
-            for (number, lattice) in lattices.iter().enumerate() {
+        let lattices: Vec<Lattice> = others.iter().map(Lattice::of).collect();
+        let of_laid = |laid: &Laid| -> Vec<Held> {
+            let lattices = lattices.iter();
+            lattices.map(|other| held(other, &laid.active)).collect()
+        };
+        let all: Vec<Vec<Held>> = self.laid.iter().map(of_laid).collect();
+        self.respond(seen, progress, &mut |number, list, responses| {
+            let laid = &self.laid[number];
+            for (other, held) in all[number].iter().enumerate() {
                 for step in STEPS {
-                    visit(number, laid.way(lattice, responses, step, (list, seen)));
+                    visit(other, laid.way(held, responses, step, (list, seen)));
                 }
             }
             false
         })
     }
 
-    /// Calls `visit` with what is seen of every window, for every pitch, way to lie and level of noise, until it returns `true`.
+    /// Calls `visit` with what is seen of every window, for every lattice that is laid, by its number, every way to lie and level of noise, until it
+    /// returns `true`.
     fn respond(
         &self,
         seen: &[&Seen],
         progress: &mut dyn Progress,
-        visit: &mut dyn FnMut(&Laid, usize, &[f64]) -> bool,
+        visit: &mut dyn FnMut(usize, usize, &[f64]) -> bool,
     ) -> Result<(), Cancelled> {
         for (number, laid) in self.laid.iter().enumerate() {
             for (list, observe) in seen.iter().enumerate() {
@@ -229,7 +244,7 @@ impl Reader<'_> {
                 }
                 let evidence = Evidence::new(&laid.response, &observations);
                 for noise in NOISES {
-                    if visit(laid, list, &evidence.responses(noise)) {
+                    if visit(number, list, &evidence.responses(noise)) {
                         return Ok(());
                     }
                 }
@@ -248,13 +263,13 @@ impl Laid<'_> {
     /// The way of reading at a step, of one of so many ways to lie.
     fn way(
         &self,
-        lattice: &Lattice,
+        held: &Held,
         responses: &[f64],
         step: f64,
         (list, seen): (usize, &[&Seen]),
     ) -> Way {
         Way {
-            places: self.places(lattice, responses, step),
+            places: self.places(held, responses, step),
             ln_num_tests: self.ln_num_ways + libm::log(seen.len() as f64),
             list,
             radius: self.radius(),
@@ -262,23 +277,24 @@ impl Laid<'_> {
     }
 
     /// The windows with their errors at a step, in the frame's units.
-    fn places(&self, lattice: &Lattice, responses: &[f64], step: f64) -> Vec<Place> {
+    fn places(&self, held: &Held, responses: &[f64], step: f64) -> Vec<Place> {
         let step = step / self.placement.pitch;
-        let place = |(window, &response): (&Window, &f64)| {
-            let (dither, symbol) = lattice.at(window.index);
-            let phase = phase(window.flux / step, dither);
-            let error = |coset: f64| {
-                let phase = phase - coset;
-                phase.round() - phase
+        let place =
+            |((window, &(dither, symbol)), &response): ((&Window, &(f64, Symbol)), &f64)| {
+                let phase = phase(window.flux / step, dither);
+                let error = |coset: f64| {
+                    let phase = phase - coset;
+                    phase.round() - phase
+                };
+                Place {
+                    symbol,
+                    response,
+                    errors: [error(0.5), error(0.0)],
+                    centre: centre(&self.frame.pose, &self.placement, window.index),
+                }
             };
-            Place {
-                symbol,
-                response,
-                errors: [error(0.5), error(0.0)],
-                centre: centre(&self.frame.pose, &self.placement, window.index),
-            }
-        };
-        self.active.iter().zip(responses).map(place).collect()
+        let windows = self.active.iter().zip(held);
+        windows.zip(responses).map(place).collect()
     }
 }
 

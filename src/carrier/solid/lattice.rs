@@ -58,15 +58,6 @@ impl Lattice {
         }
     }
 
-    /// The same lattice, whose points hold what another key's would.
-    #[cfg(test)]
-    pub fn holding(self, other: &Key) -> Lattice {
-        Lattice {
-            symbols: other.prf("solid"),
-            ..self
-        }
-    }
-
     /// The lattice coordinates of the frame's centre.
     pub fn centre(&self) -> DVec3 {
         -self.shift

@@ -18,6 +18,9 @@ const MOST_PIECES: usize = 16;
 /// tell.
 const MOST_UNDONE: usize = 4;
 
+/// Pieces that are searched widely, the whole being the first: stretches and scans take as long for a small one as for a large one.
+const WIDE: usize = 2;
+
 /// Key-free measurement of a mesh: all its surfaces, then those of each of its pieces. Each begins with what it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
@@ -28,7 +31,7 @@ impl Measurement {
     /// Measures a mesh.
     pub fn new(mesh: &Mesh) -> Measurement {
         let mut all = Vec::new();
-        for surfaces in Suspect::new(mesh).0 {
+        for surfaces in Suspect::new(mesh).pieces {
             if surfaces.is_empty() {
                 all.push(Surface::unread());
             }
@@ -53,7 +56,7 @@ impl Measurement {
         for piece in self.pieces() {
             pieces.push(Box::new(piece.iter().map(Cow::Borrowed)));
         }
-        read(pieces, &|| Lattice::of(key), is_settled, progress)
+        read(pieces, &|| Lattice::of(key), is_settled, WIDE, progress)
     }
 
     /// The surfaces of the whole, and of each piece.
@@ -112,7 +115,10 @@ impl FromIterator<Surface> for Measurement {
 }
 
 /// A suspect that is measured as it is read: as a whole, and each of its pieces alone.
-pub struct Suspect(Vec<Surfaces>);
+pub struct Suspect {
+    pieces: Vec<Surfaces>,
+    num_wide: usize,
+}
 
 impl Suspect {
     /// Prepares a mesh.
@@ -145,12 +151,26 @@ impl Suspect {
         if kept.iter().all(Surfaces::is_empty) {
             kept.clear();
         }
-        Suspect(kept)
+        Suspect {
+            pieces: kept,
+            num_wide: WIDE,
+        }
     }
 
     /// The same, with surfaces of each piece that `change` makes of them.
     pub fn with(self, change: impl Fn(Surfaces) -> Surfaces) -> Suspect {
-        Suspect(self.0.into_iter().map(change).collect())
+        Suspect {
+            pieces: self.pieces.into_iter().map(change).collect(),
+            ..self
+        }
+    }
+
+    /// The same where it is known how it was turned and stretched: neither is searched for.
+    pub fn known_to_lie(self) -> Suspect {
+        Suspect {
+            num_wide: 0,
+            ..self
+        }
     }
 
     /// The soft symbols of a key: no more surfaces are measured than it takes to find its mark, and none where what the suspect says as
@@ -162,10 +182,16 @@ impl Suspect {
         progress: &mut dyn Progress,
     ) -> Result<Reading, Cancelled> {
         let mut pieces: Vec<SurfacesOf> = Vec::new();
-        for surfaces in self.0 {
+        for surfaces in self.pieces {
             pieces.push(Box::new(surfaces.map(Cow::Owned)));
         }
-        read(pieces, &|| Lattice::of(key), is_settled, progress)
+        read(
+            pieces,
+            &|| Lattice::of(key),
+            is_settled,
+            self.num_wide,
+            progress,
+        )
     }
 }
 

@@ -25,10 +25,8 @@ const KINDS: usize = 3;
 /// The surfaces of one piece, in their order.
 pub type SurfacesOf<'a> = Box<dyn Iterator<Item = Cow<'a, Surface>> + 'a>;
 
-/// Pieces that are searched widely, the whole being the first: stretches and scans take as long for a small one as for a large one.
-const WIDE: usize = 2;
-
-/// Reads the surfaces of a suspect with a key, and those of each of its pieces alone, until it is sure of one.
+/// Reads the surfaces of a suspect with a key, and those of each of its pieces alone, until it is sure of one. So many of them are searched widely, for stretches
+/// and unknown turns.
 ///
 /// All are looked at as they are before anything is undone: a marked model is mostly found in that, and where what was read
 /// then `is_settled`, nothing more is.
@@ -36,6 +34,7 @@ pub fn read<'a>(
     pieces: Vec<SurfacesOf<'a>>,
     lattice: &dyn Fn() -> Lattice,
     is_settled: &dyn Fn(&Reading) -> bool,
+    num_wide: usize,
     progress: &mut dyn Progress,
 ) -> Result<Reading, Cancelled> {
     let num_pieces = pieces.len();
@@ -61,7 +60,7 @@ pub fn read<'a>(
     for (number, mut search, mut surfaces) in begun {
         let mut report =
             |stage, part| progress.report(stage, (number as f64 + part) / num_pieces as f64);
-        search.go_on(&mut surfaces, number < WIDE, &mut report)?;
+        search.go_on(&mut surfaces, number < num_wide, &mut report)?;
         let reading = search.conclude().of_piece(number, num_pieces);
         if search.is_sure() {
             return Ok(reading);
@@ -206,7 +205,8 @@ mod tests {
 
     fn reading(surfaces: &[Surface], lattice: impl Fn() -> Lattice) -> Reading {
         let surfaces = surfaces.iter().map(Cow::Borrowed);
-        read(vec![Box::new(surfaces)], &lattice, &|_| false, &mut ignore).unwrap()
+        let settled = |_: &Reading| false;
+        read(vec![Box::new(surfaces)], &lattice, &settled, 1, &mut ignore).unwrap()
     }
 
     /// What is followed, what it is charged, and what each symbol weighs.

@@ -48,6 +48,8 @@ const KEPT: usize = 3;
 const NEARLY: f64 = 0.12;
 /// What is less near than this after the last steps on few points is not tried on all: it is not read as it is.
 const HOPELESS: f64 = 0.35;
+/// Rounds on all points of what was brought near on a few: after each round what is left is a small part of what was.
+const LAST_ROUNDS: usize = 5;
 /// What is less near than this lies on no original.
 pub const LEAST_NEAR: f64 = 0.6;
 
@@ -289,9 +291,9 @@ impl<'a> Found<'a> {
                 kept.push(candidate);
             }
         }
-        let finish = |kept: Registration| match self.finished(&kept, &self.refined) {
+        let finish = |kept: Registration| match self.finished(&kept, &self.refined, [4, 8]) {
             hopeless if hopeless.near < HOPELESS => hopeless,
-            _ => self.finished(&kept, self.all),
+            nearly => self.finished(&nearly, self.all, [0, LAST_ROUNDS]),
         };
         let mut finished: Vec<Registration> = kept.into_iter().map(finish).collect();
         finished.retain(|finished| self.is_possible(&finished.motion));
@@ -299,11 +301,16 @@ impl<'a> Found<'a> {
         finished
     }
 
-    /// The last steps, on so many points.
-    fn finished(&self, kept: &Registration, points: &Points) -> Registration {
+    /// The last steps, on so many points: in so many rounds as a similarity, and then as an affine map.
+    fn finished(
+        &self,
+        kept: &Registration,
+        points: &Points,
+        [similar, affine]: [usize; 2],
+    ) -> Registration {
         let (d, surface) = (self.original.diagonal, &self.original.surface);
         let mut motion = kept.motion;
-        for (freedom, rounds) in [(Freedom::Similarity, 4), (Freedom::Affine, 8)] {
+        for (freedom, rounds) in [(Freedom::Similarity, similar), (Freedom::Affine, affine)] {
             let reach = [0.012 * d, 0.006 * d];
             motion = refined(points, surface, motion, freedom, rounds, reach, 0.001 * d);
         }

@@ -173,7 +173,7 @@ export class Check extends View<CheckStage> {
       return;
     }
     const key = keySource();
-    const answer = await this.run(`Comparing ${model.name} with ${given.name}`, (task) => compared(model, given, key, task));
+    const answer = await this.run(`Comparing ${model.name} with ${given.name}`, (task) => compared(model, given, key, expected, task));
     if (!answer) {
       return;
     }
@@ -206,7 +206,7 @@ export class Check extends View<CheckStage> {
     return card(
       isOther ? "partial" : answer.verdict,
       isOther ? `Your key’s mark, with ${answer.tag === null ? "number" : "tag"} ${name}, not ${expected}` : headlineOf(answer),
-      [`${model.name}, compared with ${given.kind === "record" ? "the record" : "the original"} ${given.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}.`],
+      [`${model.name}, compared with ${given.kind === "record" ? "the record" : "the original"} ${given.name}, with ${key.owner === null ? "the key of a file" : `the key of ${key.owner}`}${key.work === null ? "" : ` for the work ${key.work}`}${expected === null ? "" : `, looked at for the tag ${expected}`}.`],
       answers(answer, given),
       ...(isMark(answer) ? [h("p", { class: "hint" }, PROVES_COMPARED), details("In numbers", figures)] : [details("Details for the owner", h("p", { class: "hint" }, DO_NOT_PASS_ON), figures)]),
       ...(answer.overlay ? [h("p", { class: "hint" }, "The viewer shows the suspect where it lies on the original: move the line between them, see how far they are apart, and which places speak for your mark. That last map follows your key: keep it to yourself.")] : []),

@@ -37,23 +37,28 @@ export function argumentsOf(key: KeySource, given: Given | null): string {
   return `${given ? `--${given.kind} ${given.name} ` : ""}${owner}${work}`;
 }
 
-/** Compares, and states what was found. */
-export async function compared(model: Model, given: Given, key: KeySource, task: Task): Promise<Compared> {
+/** Compares, for an expected tag if there is one, and states what was found; where the key's mark is there with another, as if none had been expected. */
+export async function compared(model: Model, given: Given, key: KeySource, expected: string | null, task: Task): Promise<Compared> {
   const client = await engine;
   const { signal, onProgress } = task;
-  const statement = {
+  const stated = {
     ...(key.owner === null ? {} : { owner: key.owner }),
     date: new Date().toISOString(),
     files: await statedFiles(model, given),
-    commands: [`meshmark extract ${model.name} ${argumentsOf(key, given)}`],
   };
-  const options = { files: model.buffers, details: true, overlay: true, statement, signal, onProgress };
-  return withKey(client, key.make, task, async (bytes) => {
+  const call = async (bytes: Uint8Array, tag: string | null) => {
+    const command = tag === null ? `extract ${model.name}` : `verify ${model.name} --tag ${tag}`;
+    const statement = { ...stated, commands: [`meshmark ${command} ${argumentsOf(key, given)}`] };
+    const options = { files: model.buffers, expected: tag ?? undefined, details: true, overlay: true, statement, signal, onProgress };
     const comparison =
       given.kind === "original"
         ? await client.compare(model.bytes, given.model.bytes, bytes, { ...options, originalFiles: given.model.buffers })
         : await client.compareWithRecord(model.bytes, given.text, bytes, options).catch(naming(given.name));
     return comparison as Compared;
+  };
+  return withKey(client, key.make, task, async (bytes) => {
+    const comparison = await call(bytes, expected);
+    return comparison.verdict === "partial" && comparison.number !== null ? call(bytes, null) : comparison;
   });
 }
 

@@ -64,7 +64,7 @@ mod tests {
 
     /// Lattices of each suspect, and keys of each; `cargo xtask lab --informed strong --wrong-keys 100000` tries more.
     const LATTICES: u64 = 2;
-    const KEYS: u64 = 150;
+    const KEYS: u64 = 60;
 
     fn key(number: u64) -> Key {
         let mut bytes = [0x5e; Key::BYTES];

@@ -15,4 +15,4 @@ macro_rules! room {
 room!(attack carrier code detection digest document evidence geometry key mesh paper progress scene);
 
 #[doc(hidden)]
-pub use crate::watermark::strangers;
+pub use crate::watermark::{Beside, strangers, trace_all};

@@ -93,9 +93,9 @@ struct Arguments {
     /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.
     #[arg(long, value_name = "STRENGTH", groups = ["instead", "keyed"], conflicts_with_all = ["full"])]
     informed: Option<String>,
-    /// Instead of the grid: copies that leak, alone or mixed by several buyers, and who is named; prints a table.
-    #[arg(long, group = "instead", conflicts_with_all = GRID)]
-    trace: bool,
+    /// Instead of the grid: copies at a strength that leak, alone or mixed by several buyers, and who is named; prints a table.
+    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = GRID)]
+    trace: Option<String>,
     /// Instead of the grid: generated models in a new folder, marked with a key that is drawn for them, for outsiders to break.
     #[arg(long, value_name = "FOLDER", group = "instead", conflicts_with_all = GRID)]
     challenge: Option<PathBuf>,
@@ -200,8 +200,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         return adversary::table(models, &Seed::new(seed));
     }
     if let Some(name) = &arguments.informed {
-        let strength = STRENGTHS.into_iter().find(|(own, _)| own == name);
-        let strength = strength.ok_or_else(|| format!("there is no strength {name}"))?;
+        let strength = named_strength(name)?;
         let most = match arguments.quick {
             true => Size::Quick,
             false => Size::Full,
@@ -233,9 +232,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             arguments.low_poly,
         );
     }
-    if arguments.trace {
+    if let Some(name) = &arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;
-        return trace::table(&models, &Seed::new(seed));
+        return trace::table(&models, named_strength(name)?, &Seed::new(seed));
     }
     if let Some(num_keys) = arguments.local {
         let (models, _) = models::all(arguments.models.as_deref())?;
@@ -300,6 +299,11 @@ fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> R
         "found.svg",
         &found::plot(&scope.rows, &results),
     )
+}
+
+fn named_strength(name: &str) -> Result<(&'static str, Strength), String> {
+    let strength = STRENGTHS.into_iter().find(|(own, _)| *own == name);
+    strength.ok_or_else(|| format!("there is no strength {name}"))
 }
 
 /// Other people's programs, where they are asked for; installs them.

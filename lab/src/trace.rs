@@ -8,9 +8,10 @@ use meshmark::internals::document::Document;
 use meshmark::internals::geometry::{Distortion, diagonal};
 use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::Scene;
+use meshmark::internals::{Beside, trace_all};
 use meshmark::{
-    EmbedOptions, Error, Files, Plan, RecordOptions, Strength, Surface, Tracing, prepare, record,
-    trace, trace_overlaid, trace_overlaid_with_record,
+    EmbedOptions, Error, Files, Model as File, Plan, RecordOptions, Strength, Surface, prepare,
+    record,
 };
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -21,12 +22,6 @@ const LEDGERS: [u64; 3] = [10, 1000, 100_000];
 
 /// Who mixes has a number among the first ten, so that all ledgers have it.
 const FIRST: u64 = LEDGERS[0];
-
-/// The strengths that are tried.
-const STRENGTHS: [(&str, Strength); 2] = [
-    ("balanced", Strength::BALANCED),
-    ("strong", Strength::STRONG),
-];
 
 /// How several copies become one.
 #[derive(Clone, Copy)]
@@ -208,53 +203,36 @@ impl Caught {
     }
 }
 
-/// Tables with a line for each row, of the models that hold numbers. It takes hours, so what is known so far is told on the way.
-pub fn table(models: &[Model], seed: &Seed) -> Result<String, String> {
+/// A table with a line for each row, of the models that hold numbers. It takes hours, so what is known so far is told on the way.
+pub fn table(
+    models: &[Model],
+    (name, strength): (&str, Strength),
+    seed: &Seed,
+) -> Result<String, String> {
     let rows = rows()?;
     let ledgers = LEDGERS.map(|buyers| (1..=buyers).collect::<Vec<u64>>());
-    let mut text = format!(
+    let header = format!(
         "Seed {}. Caught: at least one of who leaked / all of them.\n",
         seed.number
     );
-    let mut told = Told::default();
-    for (name, strength) in STRENGTHS {
-        let found = Mutex::new(Vec::new());
-        models.par_iter().for_each(|model| {
-            let purpose = format!("trace, {name}, {}", model.name);
-            let caught = of_model(model, strength, &rows, &ledgers, seed, &purpose);
-            let mut found = found
-                .lock()
-                .unwrap_or_else(|poisoned| poisoned.into_inner());
-            found.push((model.name.clone(), caught));
-            eprintln!(
-                "{}",
-                strength_table(name, &rows, &found, &mut Told::default())
-            );
-        });
-        let found = found
-            .into_inner()
+    let found = Mutex::new(Vec::new());
+    models.par_iter().for_each(|model| {
+        let purpose = format!("trace, {name}, {}", model.name);
+        let caught = of_model(model, strength, &rows, &ledgers, seed, &purpose);
+        let mut found = found
+            .lock()
             .unwrap_or_else(|poisoned| poisoned.into_inner());
-        text += &strength_table(name, &rows, &found, &mut told);
-    }
-    let Told { named, trials } = told;
-    let _ = write!(text, "\nInnocents: {named} named in {trials} trials.");
-    Ok(text)
+        found.push((model.name.clone(), caught));
+        eprintln!("{}", strength_table(name, &rows, &found));
+    });
+    let found = found
+        .into_inner()
+        .unwrap_or_else(|poisoned| poisoned.into_inner());
+    Ok(header + &strength_table(name, &rows, &found))
 }
 
-/// Buyers without a part in a suspect: how many were named, and how many asked for.
-#[derive(Default)]
-struct Told {
-    named: usize,
-    trials: usize,
-}
-
-/// The table of a strength; models that hold no number are named above it.
-fn strength_table(
-    name: &str,
-    rows: &[Row],
-    found: &[(String, Option<Vec<Caught>>)],
-    told: &mut Told,
-) -> String {
+/// The table of a strength, of the models that are done; those that hold no number are named above it.
+fn strength_table(name: &str, rows: &[Row], found: &[(String, Option<Vec<Caught>>)]) -> String {
     let names = |holds: bool| {
         let mut names: Vec<&str> = found
             .iter()
@@ -278,13 +256,14 @@ fn strength_table(
         names(true),
         names(false),
     );
+    let (mut named, mut trials) = (0, 0);
     for (number, row) in rows.iter().enumerate() {
         let all = caught.iter().map(|rows| rows[number]);
         let sum = all.fold(Caught::default(), Caught::and);
         let cells = (0..LEDGERS.len()).map(|i| format!("{} / {}", sum.some[i], sum.all[i]));
         let cells: Vec<String> = cells.collect();
-        told.named += sum.innocents;
-        told.trials += sum.trials;
+        named += sum.innocents;
+        trials += sum.trials;
         let _ = writeln!(
             text,
             "| {} | {} | {} | {:.2} |",
@@ -294,6 +273,7 @@ fn strength_table(
             sum.distance / sum.num_models.max(1) as f64
         );
     }
+    let _ = writeln!(text, "\nInnocents: {named} named in {trials} trials.");
     text
 }
 
@@ -330,34 +310,23 @@ fn of_model(
             ..Caught::default()
         };
         let guilty = &numbers[..row.num];
-        let mut is_settled = false;
-        for (place, ledger) in ledgers.iter().enumerate().rev() {
-            // Who is named among many is named among few: their bound is charged less.
-            if is_settled {
-                caught.some[place] = 1;
-                caught.all[place] = 1;
-                continue;
-            }
-            let positions: Vec<[f64; 3]> = suspect.positions.iter().map(|p| p.to_array()).collect();
-            let surface = Surface::new(&positions, &suspect.triangles);
-            let tracing = match row.with {
-                With::Nothing => trace(surface, &key, ledger),
-                With::Original => {
-                    trace_overlaid(surface, &model.bytes, &key, ledger).map(|traced| traced.0)
-                }
-                With::Record => trace_overlaid_with_record(surface, &record, &key, ledger)
-                    .map(|traced| traced.0),
-            };
-            let named = named(tracing);
-            caught.trials += ledger.len() - row.num;
-            let num_caught = named
-                .iter()
-                .filter(|number| guilty.contains(number))
-                .count();
-            caught.some[place] = usize::from(num_caught > 0);
-            caught.all[place] = usize::from(num_caught == row.num);
-            caught.innocents += named.len() - num_caught;
-            is_settled = num_caught == row.num;
+        let positions: Vec<[f64; 3]> = suspect.positions.iter().map(|p| p.to_array()).collect();
+        let surface = Surface::new(&positions, &suspect.triangles);
+        let beside = match row.with {
+            With::Nothing => Beside::Nothing,
+            With::Original => Beside::Original(File::new(&model.bytes)),
+            With::Record => Beside::Record(&record),
+        };
+        // Nobody is named where the suspect cannot be read.
+        let tracings = trace_all(surface.into(), beside, &key, ledgers).unwrap_or_default();
+        for (place, tracing) in tracings.iter().enumerate() {
+            let named = tracing.buyers.iter().map(|buyer| buyer.number);
+            let (of_these, others): (Vec<u64>, _) =
+                named.partition(|number| guilty.contains(number));
+            caught.trials += tracing.num_buyers - row.num;
+            caught.some[place] = usize::from(!of_these.is_empty());
+            caught.all[place] = usize::from(of_these.len() == row.num);
+            caught.innocents += others.len();
         }
         caught
     });
@@ -373,10 +342,4 @@ fn copies(plan: &Plan, numbers: &[u64]) -> Result<Vec<Mesh>, Error> {
 fn mesh(model: &[u8]) -> Option<Mesh> {
     let document = Document::read(model, &Files::new()).ok()?;
     Some(Scene::gather(&document).ok()?.mesh)
-}
-
-/// Nobody where the suspect cannot be read.
-fn named(tracing: Result<Tracing, Error>) -> Vec<u64> {
-    let buyers = tracing.map(|tracing| tracing.buyers).unwrap_or_default();
-    buyers.into_iter().map(|buyer| buyer.number).collect()
 }

@@ -61,5 +61,6 @@ pub use statement::{Finding, Ledger, StatedFile, Statement};
 pub use strangers::strangers;
 pub use suspect::{Surface, Suspect};
 pub use trace::{
-    Traced, Tracing, trace, trace_evidence, trace_overlaid, trace_overlaid_with_record,
+    Beside, Traced, Tracing, trace, trace_all, trace_evidence, trace_overlaid,
+    trace_overlaid_with_record,
 };

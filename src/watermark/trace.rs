@@ -80,18 +80,8 @@ pub fn trace<'a>(
     numbers: &[u64],
 ) -> Result<Tracing, Error> {
     let mut suspect = suspect.into();
-    suspect.step(Stage::Read, 0.0)?;
-    let mesh = suspect.mesh()?;
-    suspect.step(Stage::Measure, 0.0)?;
-    let readings = read_blind(&mesh, key, &is_loud, &mut suspect)?;
-    let reading = Judge::new(key, None, Input::Model).conclude(&readings);
-    let testimonies = testimonies(&readings, &Loudest::default());
-    let tracing = conclude(&testimonies, reading, key, numbers)?;
-    suspect.step(Stage::Test, 1.0)?;
-    Ok(Tracing {
-        triangles: Some(mesh.triangles.len()),
-        ..tracing
-    })
+    let leak = Leak::read(&mut suspect, key)?;
+    leak.concluded(key, numbers, &mut suspect)
 }
 
 /// The same of evidence.
@@ -101,13 +91,13 @@ pub fn trace<'a>(
 pub fn trace_evidence(evidence: &Evidence, key: &Key, numbers: &[u64]) -> Result<Tracing, Error> {
     let read = |carrier| evidence.measurement(carrier).read_until(key, &is_loud);
     let readings = Carrier::STANDARD.map(read);
-    let reading = Judge::new(key, None, Input::Evidence).conclude(&readings);
-    conclude(
-        &testimonies(&readings, &Loudest::default()),
-        reading,
-        key,
-        numbers,
-    )
+    let leak = Leak {
+        testimonies: testimonies(&readings, &Loudest::default()),
+        reading: Judge::new(key, None, Input::Evidence).conclude(&readings),
+        triangles: None,
+        comparison: None,
+    };
+    leak.tracing(key, numbers)
 }
 
 /// As [`trace`], with the original: the model as [`prepare`](super::prepare) or [`embed`](super::embed) got it. Buyers are named so who are named
@@ -122,10 +112,9 @@ pub fn trace_overlaid<'a, 'b>(
     key: &Key,
     numbers: &[u64],
 ) -> Result<(Tracing, Option<Overlay>), Error> {
-    let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
-    let heard = Some(&mut loudest);
-    let informed = hear_with_original(&mut suspect, &original.into(), key, None, heard)?;
-    let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
+    let mut suspect = suspect.into();
+    let (leak, compared) = Leak::read_with_original(&mut suspect, &original.into(), key)?;
+    let tracing = leak.concluded(key, numbers, &mut suspect)?;
     Ok((tracing, compared.overlaid().1))
 }
 
@@ -140,33 +129,143 @@ pub fn trace_overlaid_with_record<'a>(
     key: &Key,
     numbers: &[u64],
 ) -> Result<(Tracing, Option<Overlay>), Error> {
-    let (mut suspect, mut loudest) = (suspect.into(), Loudest::default());
-    let heard = Some(&mut loudest);
-    let informed = hear_with_record(&mut suspect, record, key, None, heard)?;
-    let (tracing, compared) = conclude_informed(informed, &loudest, suspect, key, numbers)?;
+    let mut suspect = suspect.into();
+    let (leak, compared) = Leak::read_with_record(&mut suspect, record, key)?;
+    let tracing = leak.concluded(key, numbers, &mut suspect)?;
     Ok((tracing, compared.overlaid_on_record().1))
 }
 
-/// What was heard with the original or the record, and what is read blind, which has a half of the probability.
-fn conclude_informed(
-    informed: Informed,
-    loudest: &Loudest,
-    mut suspect: Suspect,
+/// As [`trace`] for each of several ledgers, the suspect read once: for experiments, which of one suspect make many. With the original or the record where one is given.
+///
+/// # Errors
+/// As the function for one ledger.
+pub fn trace_all(
+    suspect: Suspect,
+    beside: Beside,
     key: &Key,
-    numbers: &[u64],
-) -> Result<(Tracing, Compared), Error> {
-    let is_enough = |reading: &Reading| loudest.are_loud() || is_loud(reading);
-    let readings = read_blind(&informed.suspect, key, &is_enough, &mut suspect)?;
-    let reading = Judge::new(key, None, Input::Model)
-        .one_of(2)
-        .conclude(&readings);
-    let num_triangles = informed.suspect.triangles.len();
-    let compared = informed.concluded(Some(Blind::of(&reading)));
-    let mut tracing = conclude(&testimonies(&readings, loudest), reading, key, numbers)?;
-    tracing.triangles = Some(num_triangles);
-    tracing.hear(&compared.comparison);
-    suspect.step(Stage::Test, 1.0)?;
-    Ok((tracing, compared))
+    ledgers: &[Vec<u64>],
+) -> Result<Vec<Tracing>, Error> {
+    let mut suspect = suspect;
+    let leak = match beside {
+        Beside::Nothing => Leak::read(&mut suspect, key)?,
+        Beside::Original(original) => Leak::read_with_original(&mut suspect, &original, key)?.0,
+        Beside::Record(record) => Leak::read_with_record(&mut suspect, record, key)?.0,
+    };
+    let ledgers = ledgers.iter();
+    ledgers.map(|numbers| leak.tracing(key, numbers)).collect()
+}
+
+/// What is at hand beside the key and the ledgers.
+pub enum Beside<'a> {
+    /// Nothing.
+    Nothing,
+    /// The original.
+    Original(Model<'a>),
+    /// A record, as text.
+    Record(&'a str),
+}
+
+/// What a suspect says of messages, before anybody is asked for.
+struct Leak {
+    testimonies: Vec<Testimony>,
+    reading: Extraction,
+    triangles: Option<usize>,
+    comparison: Option<Comparison>,
+}
+
+impl Leak {
+    fn read(suspect: &mut Suspect, key: &Key) -> Result<Leak, Error> {
+        suspect.step(Stage::Read, 0.0)?;
+        let mesh = suspect.mesh()?;
+        suspect.step(Stage::Measure, 0.0)?;
+        let readings = read_blind(&mesh, key, &is_loud, suspect)?;
+        Ok(Leak {
+            testimonies: testimonies(&readings, &Loudest::default()),
+            reading: Judge::new(key, None, Input::Model).conclude(&readings),
+            triangles: Some(mesh.triangles.len()),
+            comparison: None,
+        })
+    }
+
+    fn read_with_original(
+        suspect: &mut Suspect,
+        original: &Model,
+        key: &Key,
+    ) -> Result<(Leak, Compared), Error> {
+        let mut loudest = Loudest::default();
+        let informed = hear_with_original(suspect, original, key, None, Some(&mut loudest))?;
+        Leak::informed(informed, &loudest, suspect, key)
+    }
+
+    fn read_with_record(
+        suspect: &mut Suspect,
+        record: &str,
+        key: &Key,
+    ) -> Result<(Leak, Compared), Error> {
+        let mut loudest = Loudest::default();
+        let informed = hear_with_record(suspect, record, key, None, Some(&mut loudest))?;
+        Leak::informed(informed, &loudest, suspect, key)
+    }
+
+    /// With what was heard with the original or the record, and what is read blind, which has a half of the probability.
+    fn informed(
+        informed: Informed,
+        loudest: &Loudest,
+        suspect: &mut Suspect,
+        key: &Key,
+    ) -> Result<(Leak, Compared), Error> {
+        let is_enough = |reading: &Reading| loudest.are_loud() || is_loud(reading);
+        let readings = read_blind(&informed.suspect, key, &is_enough, suspect)?;
+        let judge = Judge::new(key, None, Input::Model).one_of(2);
+        let reading = judge.conclude(&readings);
+        let triangles = Some(informed.suspect.triangles.len());
+        let compared = informed.concluded(Some(Blind::of(&reading)));
+        let leak = Leak {
+            testimonies: testimonies(&readings, loudest),
+            reading,
+            triangles,
+            comparison: Some(compared.comparison.clone()),
+        };
+        Ok((leak, compared))
+    }
+
+    fn concluded(
+        &self,
+        key: &Key,
+        numbers: &[u64],
+        suspect: &mut Suspect,
+    ) -> Result<Tracing, Error> {
+        let tracing = self.tracing(key, numbers)?;
+        suspect.step(Stage::Test, 1.0)?;
+        Ok(tracing)
+    }
+
+    fn tracing(&self, key: &Key, numbers: &[u64]) -> Result<Tracing, Error> {
+        let numbers: BTreeSet<u64> = numbers.iter().copied().collect();
+        let hearing = Hearing::new(&self.testimonies, key, &numbers)?;
+        let buyers = hearing.named();
+        let traced = match self.reading.verdict {
+            _ if !buyers.is_empty() => Traced::Named,
+            Verdict::Found | Verdict::Present => Traced::Nobody,
+            Verdict::CannotCheck => Traced::CannotCheck,
+            _ => Traced::NoMark,
+        };
+        let tracing = Tracing {
+            traced,
+            sentence: traced.sentence(),
+            buyers,
+            num_buyers: numbers.len(),
+            num_ways: self.testimonies.len(),
+            ln_charge: hearing.ln_charge(),
+            triangles: self.triangles,
+            reading: self.reading.clone(),
+            comparison: None,
+        };
+        Ok(match &self.comparison {
+            Some(comparison) => tracing.with(comparison),
+            None => tracing,
+        })
+    }
 }
 
 fn read_blind(
@@ -195,37 +294,9 @@ fn pilots(hypothesis: &Hypothesis) -> Statistic {
     Statistic::new(pilots.map(|soft| (soft.value, soft.weight)))
 }
 
-fn conclude(
-    testimonies: &[Testimony],
-    reading: Extraction,
-    key: &Key,
-    numbers: &[u64],
-) -> Result<Tracing, Error> {
-    let numbers: BTreeSet<u64> = numbers.iter().copied().collect();
-    let hearing = Hearing::new(testimonies, key, &numbers)?;
-    let buyers = hearing.named();
-    let traced = match reading.verdict {
-        _ if !buyers.is_empty() => Traced::Named,
-        Verdict::Found | Verdict::Present => Traced::Nobody,
-        Verdict::CannotCheck => Traced::CannotCheck,
-        _ => Traced::NoMark,
-    };
-    Ok(Tracing {
-        traced,
-        sentence: traced.sentence(),
-        buyers,
-        num_buyers: numbers.len(),
-        num_ways: testimonies.len(),
-        ln_charge: hearing.ln_charge(),
-        triangles: None,
-        reading,
-        comparison: None,
-    })
-}
-
 impl Tracing {
     /// Hears what is read with the original or the record.
-    fn hear(&mut self, comparison: &Comparison) {
+    fn with(mut self, comparison: &Comparison) -> Tracing {
         let is_mark = matches!(comparison.verdict, Verdict::Found | Verdict::Present);
         match self.traced {
             Traced::Named | Traced::Nobody => {}
@@ -239,6 +310,7 @@ impl Tracing {
             }
         }
         self.comparison = Some(comparison.clone());
+        self
     }
 }
 

@@ -42,11 +42,9 @@ pub fn test(all: bool) -> Result<()> {
     let compile = format!("{NATIVE} --no-run");
     let name = "native tests, compiled";
     add(&mut steps, name, &["native lint"], &compile, COMPILE);
-    // Side by side, and by a first letter, so that none is in neither: the suite, and all others.
+    // By a first letter, so that none is in neither: the suite, and below all others.
     let suite = format!("{NATIVE} --test s*");
     add(&mut steps, "native suite", &[name], &suite, TESTS);
-    let others = format!("{NATIVE} --lib --bins --test [!s]*");
-    add(&mut steps, "other native tests", &[name], &others, TESTS);
     wasm::add_set_up(&mut steps, &["format"]);
     page::add(&mut steps, &manifest);
     steps.add("Chromium", &["format"], browser::set_up);
@@ -61,6 +59,8 @@ pub fn test(all: bool) -> Result<()> {
             log.run(&mut test, TESTS)
         },
     );
+    let others = format!("{NATIVE} --lib --bins --test [!s]*");
+    add(&mut steps, "other native tests", &[name], &others, TESTS);
     steps.add("documentation", &["native suite"], |log| {
         log.run(&mut command(&format!("{NATIVE} --doc")), TESTS)?;
         let mut doc = command("cargo doc --no-deps --package meshmark");

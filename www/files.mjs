@@ -12,6 +12,10 @@ import { openShop } from "./tests/in-chromium.mjs";
 import { COMPRESSIONS, io, partsOf, ready, WAYS } from "./tests/programs.mjs";
 import { validationErrors } from "./tests/validator.mjs";
 
+if (!process.env.MESHMARK_CLI || process.argv.length < 3) {
+  console.error("usage: MESHMARK_CLI=.../meshmark node files.mjs MODEL...    (cargo build --release --package meshmark-cli makes target/release/meshmark)");
+  process.exit(2);
+}
 const folder = mkdtempSync(join(tmpdir(), "meshmark-files-"));
 const KEY = ["--key-file", join(folder, "key")];
 const WITHIN = 1.03;

@@ -130,25 +130,42 @@ fn advised(
         return Ok(coarse.into());
     }
     drop(document);
-    let (strong, all) = (Strength::STRONG, EmbedOptions::default());
-    let is_weaker = options.strength.rms_rel() < strong.rms_rel();
+    let all = EmbedOptions::default().with_strength(options.strength);
     let is_given = |carrier: &Carrier| options.carriers.contains(carrier);
-    let is_without_some = !all.carriers.iter().all(is_given);
-    let mut helps = |options: &EmbedOptions| match hold(model, payload, key, options) {
-        Err(other) if other.is_of_the_model() => Ok(false),
-        held => held.map(|_| true),
-    };
-    let advice = if is_without_some && helps(&all.with_strength(options.strength))? {
-        Advice::AllCarriers
-    } else if is_weaker && helps(&options.clone().with_strength(strong))? {
-        Advice::Strong
-    } else {
-        Advice::Nothing
-    };
+    let has_all = all.carriers.iter().all(is_given);
+    let asked = options.strength.rms_rel();
+    let at = |strength: Strength| options.clone().with_strength(strength);
+    let (balanced, strong) = (Strength::BALANCED, Strength::STRONG);
+    // Less movement can help too: what a strong mark deforms may be what its frame is found by.
+    let ways = [
+        (!has_all, Advice::AllCarriers, all),
+        (asked < strong.rms_rel(), Advice::Strong, at(strong)),
+        (asked > balanced.rms_rel(), Advice::Balanced, at(balanced)),
+    ];
+    let mut advice = Advice::Nothing;
+    for (is_another, way, options) in ways {
+        if is_another && helps(model, payload, key, &options)? {
+            advice = way;
+            break;
+        }
+    }
     Ok(Error::Refused {
         refusal: Box::new(refusal),
         advice,
     })
+}
+
+/// Whether the model can be marked with these options.
+fn helps(
+    model: &mut Model,
+    payload: Payload,
+    key: &Key,
+    options: &EmbedOptions,
+) -> Result<bool, Error> {
+    match hold(model, payload, key, options) {
+        Err(other) if other.is_of_the_model() => Ok(false),
+        held => held.map(|_| true),
+    }
 }
 
 /// What is said of a carrier that was asked for and is not there.

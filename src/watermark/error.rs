@@ -17,6 +17,8 @@ pub enum Advice {
     AllCarriers,
     /// The strong strength.
     Strong,
+    /// The balanced strength.
+    Balanced,
     /// Nothing that can be chosen.
     Nothing,
 }
@@ -26,6 +28,7 @@ impl std::fmt::Display for Advice {
         f.write_str(match self {
             Advice::AllCarriers => "with all carriers it can be marked",
             Advice::Strong => "at the strong strength it can be marked",
+            Advice::Balanced => "at the balanced strength it can be marked",
             Advice::Nothing => "no carrier and no strength up to strong helps",
         })
     }

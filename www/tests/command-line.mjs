@@ -1,29 +1,44 @@
-// The command line's reports have the names and types that are declared for JavaScript: `MESHMARK_CLI` names the program.
+// The command line is what the modules for JavaScript are: its reports have the names and types that are declared for these, and what is compiled
+// for this machine makes the same bytes as what is compiled for wasm. `MESHMARK_CLI` names the program.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { demoModel, init } from "meshmark";
+import * as meshmark from "meshmark";
+import * as research from "../app/research-wasm/research.js";
 import { readContract } from "./shape.mjs";
+import { COMPRESSIONS, ready } from "./programs.mjs";
+import { smallModel } from "./support.mjs";
 
 const declared = (name) => readContract(fileURLToPath(new URL(`../../src/wasm/${name}.d.ts`, import.meta.url)));
 const marks = declared("types");
-const attacks = declared("attacks");
-const study = declared("study");
+const attacksAndStudy = declared("research");
 const folder = mkdtempSync(join(tmpdir(), "meshmark-command-line-"));
+const KEY = new Uint8Array(32).fill(1);
 const OWNER = ["--key-file", join(folder, "key")];
+let model;
+let marked;
 
 before(async () => {
-  await init();
-  writeFileSync(join(folder, "model.glb"), demoModel());
-  writeFileSync(join(folder, "key"), new Uint8Array(32).fill(1));
-  report("embed", "model.glb", "marked.glb", ...OWNER, "--tag", "ADA-1");
+  await meshmark.initFull();
+  model = await smallModel();
+  write("model.glb", model);
+  write("key", KEY);
+  marked = report("embed", "model.glb", "marked.glb", ...OWNER, "--tag", "ADA-1", "--record");
 });
 
 after(() => rmSync(folder, { recursive: true }));
+
+const write = (name, bytes) => writeFileSync(join(folder, name), bytes);
+const read = (name) => new Uint8Array(readFileSync(join(folder, name)));
+
+/** Bytes that are equal. Where they are not, no two thousand lines say so. */
+function assertSame(native, wasm) {
+  assert.equal(Buffer.compare(native, wasm), 0, `${native.length} bytes, ${wasm.length} bytes`);
+}
 
 /** What a command prints, but for what it alone tells: the times, and the files that it wrote. */
 function report(...args) {
@@ -55,26 +70,70 @@ test("inspect reports what is declared", () => {
 
 test("attacks and their cost are what is declared", () => {
   for (const attack of report("attacks")) {
-    assert.deepEqual(attacks.differences("Attack", attack), []);
+    assert.deepEqual(attacksAndStudy.differences("Attack", attack), []);
   }
   const { steps, seed, ...quality } = report("attack", "model.glb", "copy.glb", "--step", "noise 0.1");
   assert.deepEqual([steps, seed], [["noise 0.1 %"], 1]);
-  assert.deepEqual(attacks.differences("Quality", quality), []);
+  assert.deepEqual(attacksAndStudy.differences("Quality", quality), []);
 });
 
-test("the study's rows are what is declared", () => {
+test("the study's rows are what is declared, with the same numbers", () => {
   const { table1, figure5, vertices, triangles } = report("study", "model.glb", "--keys", "1");
   assert.ok(table1.length > 0 && vertices > 0 && triangles > 0);
   for (const row of table1) {
-    assert.deepEqual(study.differences("HostsRow", row), []);
+    assert.deepEqual(attacksAndStudy.differences("HostsRow", row), []);
   }
   for (const errors of Object.values(figure5).flat()) {
-    assert.deepEqual(study.differences("Errors", errors), []);
+    assert.deepEqual(attacksAndStudy.differences("Errors", errors), []);
   }
+  const mesh = research.prepare(model, "optimize");
+  assert.deepEqual(table1, table1.map(({ smoothing, iterations }) => research.hosts(mesh, { smoothing, iterations })));
 });
 
 test("an error has the declared shape", () => {
   const { verdict, error } = report("inspect", "key");
   assert.equal(verdict, "cannot-check");
   assert.deepEqual(marks.differences("MeshmarkErrorObject", error), []);
+});
+
+test("a marked model has the same bytes, with a report and a record that are the same", () => {
+  const { model: bytes, report } = meshmark.embed(model, "ADA-1", KEY);
+  assertSame(read("marked.glb"), bytes);
+  assert.deepEqual(marked, report);
+  const record = meshmark.record(model, report, KEY);
+  assert.deepEqual(JSON.parse(readFileSync(join(folder, "marked.meshmark.json"), "utf8")), JSON.parse(record));
+});
+
+test("a compressed model too", async () => {
+  await ready();
+  const compressed = await COMPRESSIONS["Draco, 14 bits"]({ model, files: {} });
+  write("compressed.glb", compressed.model);
+  report("embed", "compressed.glb", "marked-compressed.glb", ...OWNER, "--tag", "ADA-1");
+  assertSame(read("marked-compressed.glb"), meshmark.embed(compressed.model, "ADA-1", KEY).model);
+});
+
+test("an attacked copy and its evidence have the same bytes, and are read alike: blind, with the original and with the record", () => {
+  const steps = ["crop 30 %", "simplify 50 %", "noise 0.05 %"];
+  report("attack", "marked.glb", "copy.glb", ...steps.flatMap((step) => ["--step", step]));
+  const copy = research.attack(read("marked.glb"), steps);
+  assertSame(read("copy.glb"), copy);
+  report("measure", "copy.glb", "copy.evidence");
+  assertSame(read("copy.evidence"), meshmark.measure(copy));
+  assert.deepEqual(report("extract", "copy.glb", ...OWNER, "--details"), meshmark.detect(copy, KEY, { details: true }));
+  const record = readFileSync(join(folder, "marked.meshmark.json"), "utf8");
+  const withOriginal = report("extract", "copy.glb", ...OWNER, "--details", "--original", "model.glb");
+  assert.deepEqual(withOriginal, meshmark.compare(copy, model, KEY, { details: true }));
+  const withRecord = report("extract", "copy.glb", ...OWNER, "--details", "--record", "marked.meshmark.json");
+  assert.deepEqual(withRecord, meshmark.compareWithRecord(copy, record, KEY, { details: true }));
+});
+
+test("copies for buyers have the same bytes, and are traced alike", () => {
+  write("buyers.csv", "number\n7\n8\n");
+  report("copies", "model.glb", ...OWNER, "--ledger", "buyers.csv", "--out", "copies");
+  const { plan } = meshmark.prepare(model, KEY);
+  const { model: copy } = meshmark.stamp(plan, 7);
+  assertSame(read("copies/model.7.glb"), copy);
+  const traced = report("trace", "copies/model.7.glb", ...OWNER, "--ledger", "copies/ledger.csv");
+  traced.buyers.forEach((buyer) => delete buyer.name);
+  assert.deepEqual(traced, meshmark.trace(copy, KEY, Float64Array.of(7, 8)));
 });

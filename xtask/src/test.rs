@@ -17,20 +17,6 @@ const TESTS: &str = "see the failed tests above";
 /// What every native test step compiles alike, so that it is compiled once.
 const NATIVE: &str = "cargo test --workspace";
 
-/// About half of the time of the suite in wasm: the bounds, and what runs longest. These try mathematics that no target differs in, and
-/// the golden files hold that wasm gives the same bytes; `--all` runs them, in Node.
-const LONG_IN_WASM: [&str; 9] = [
-    "a_model_that_holds_no_number_has_no_copies",
-    "bound::",
-    "embed_stops_when_asked_at_any_stage",
-    "informed_bound_holds_for_wrong_keys",
-    "informed_tells_an_unmarked_copy_from_another_shape",
-    "reports_below_found_do_not_follow_the_key",
-    "robustness_of_regular_shapes",
-    "small_models_hold_a_mark_without_a_payload",
-    "wrong_keys_find_nothing",
-];
-
 /// Runs the checks of a commit, or `all`. What is long stands before what is short, for it decides when the whole ends.
 pub fn test(all: bool) -> Result<()> {
     let manifest = Manifest::read()?;
@@ -68,7 +54,7 @@ pub fn test(all: bool) -> Result<()> {
         log.run(&mut doc, "correct what rustdoc names above")
     });
     let after = ["page", "other native tests"];
-    steps.add("reports of the command line", &after, |log| {
+    steps.add("command line and modules", &after, |log| {
         let mut test = npm_test("run test:command-line");
         test.env("MESHMARK_CLI", path("target/debug/meshmark"));
         log.run(&mut test, TESTS)
@@ -78,19 +64,6 @@ pub fn test(all: bool) -> Result<()> {
         let name = "tests with research models";
         add(&mut steps, name, &["native suite"], &models, TESTS);
     }
-    // In a worker, as the package runs; there Chromium's engine is Node's.
-    let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
-    steps.add("wasm tests in Chromium", &after, |log| {
-        let mut suite = wasm::command(&manifest, "cargo test --test suite --")?;
-        suite
-            .args(LONG_IN_WASM.iter().flat_map(|name| ["--skip", name]))
-            .env("WASM_BINDGEN_USE_DEDICATED_WORKER", "1")
-            // In seconds. The runner's own limits, 20 and 5, are for small suites on idle machines. Beside other steps, on a slow
-            // machine, the suite has taken more than 900.
-            .env("WASM_BINDGEN_TEST_TIMEOUT", "2400")
-            .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
-        log.run(&mut suite, TESTS)
-    });
     if all {
         add_rest(&mut steps, &manifest);
     }
@@ -106,6 +79,17 @@ fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
         let lint =
             "cargo clippy --lib --test suite --features wasm-full,wasm-research -- -Dwarnings";
         log.run(&mut wasm::command(manifest, lint)?, LINT)
+    });
+    // In a worker, as the package runs.
+    let after = ["wasm compiler", "wasm-bindgen tools", "Chromium"];
+    steps.add("wasm tests in Chromium", &after, |log| {
+        let mut suite = wasm::command(manifest, "cargo test --test suite")?;
+        suite
+            .env("WASM_BINDGEN_USE_DEDICATED_WORKER", "1")
+            // In seconds. The runner's own limits, 20 and 5, are for small suites on idle machines.
+            .env("WASM_BINDGEN_TEST_TIMEOUT", "7200")
+            .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
+        log.run(&mut suite, TESTS)
     });
     steps.add("wasm tests in Node", &["wasm tests in Chromium"], |log| {
         let mut suite = wasm::command(manifest, "cargo test --test suite")?;

@@ -113,7 +113,8 @@ for (const [name, compress] of Object.entries(COMPRESSIONS)) {
       rows.push(result);
       const lost = ways.filter((way) => result.ways[way] === false);
       const unseen = result.isShown ? [] : ["shown otherwise by three.js"];
-      const faults = [...result.errors, ...unseen, ...lost.map((way) => `lost: ${way}`), ...(result.isCompressed ? [] : ["written plain"])];
+      const larger = result.isCompressed && result.ratio > WITHIN ? [`larger by ${percent(result.ratio)}`] : [];
+      const faults = [...result.errors, ...unseen, ...larger, ...lost.map((way) => `lost: ${way}`), ...(result.isCompressed ? [] : ["written plain"])];
       failures.push(...faults.map((fault) => `${plain.name}, ${name}${result.isFragile ? " (fragile)" : ""}: ${fault}`));
     }
   }

@@ -10,6 +10,7 @@ use meshmark::internals::detection::Statistic;
 use meshmark::internals::geometry::diagonal;
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::progress::ignore;
+use std::sync::LazyLock;
 
 /// The limit of the RMS displacement, as a fraction of the diagonal.
 const RMS_REL: f64 = 0.0008;
@@ -27,10 +28,10 @@ fn embedded(mesh: &Mesh, owner: u8) -> Option<Embedded> {
     embed(&host, &key(owner), &[], &mut ignore).unwrap()
 }
 
-fn marked(mesh: &Mesh, owner: u8) -> Mesh {
-    let mut marked = mesh.clone();
-    marked.displace(&embedded(mesh, owner).unwrap().displacement);
-    marked
+/// The machined part, marked once for all tests: that takes longer than to read it.
+fn embedded_part() -> &'static Embedded {
+    static PART: LazyLock<Embedded> = LazyLock::new(|| embedded(&shapes::cad_part(), 1).unwrap());
+    &PART
 }
 
 /// The bound of a mark without a payload, what the carrier charges paid.
@@ -47,7 +48,8 @@ fn ln_p(measurement: &Measurement, reader: u8) -> f64 {
 
 #[test]
 fn local_is_found_in_half_a_model_that_was_simplified_to_half() {
-    let marked = marked(&shapes::cad_part(), 1);
+    let mut marked = shapes::cad_part();
+    marked.displace(&embedded_part().displacement);
     for seed in 0..2 {
         let piece = simplify(&crop(&marked, 0.5, seed), 0.5);
         let suspect = Measurement::new(&similarity(&piece, seed));
@@ -60,7 +62,7 @@ fn local_is_found_in_half_a_model_that_was_simplified_to_half() {
 #[test]
 fn local_keeps_to_the_limit() {
     let mesh = shapes::cad_part();
-    let embedded = embedded(&mesh, 1).unwrap();
+    let embedded = embedded_part();
     let squares = embedded.displacement.iter().map(|d| d.length_squared());
     let rms = (squares.sum::<f64>() / mesh.positions.len() as f64).sqrt();
     let limit = RMS_REL * diagonal(&mesh.positions);

@@ -1,9 +1,9 @@
 //! Buffer views that meshoptimizer's codecs hold.
 
 use meshoptimizer_rs::codec::{
-    ExpMode, Filter, Mode, VertexEncoding, decode_filter_color, decode_filter_exp,
-    decode_filter_oct, decode_filter_quat, decode_index_buffer, decode_index_sequence,
-    decode_vertex_buffer, decode_vertex_version, encode_filter_exp, encode_vertex_buffer,
+    Filter, Mode, VertexEncoding, decode_filter_color, decode_filter_exp, decode_filter_oct,
+    decode_filter_quat, decode_index_buffer, decode_index_sequence, decode_vertex_buffer,
+    decode_vertex_version, encode_vertex_buffer,
 };
 use meshoptimizer_rs::{Limits, Workspace};
 use serde_json::Value;
@@ -150,7 +150,10 @@ fn encode_view(
     let mut workspace = Workspace::new(Limits::default());
     let (filtered, seen) = match word("filter").unwrap_or("NONE") {
         "NONE" => (now.to_vec(), now.to_vec()),
-        "EXPONENTIAL" => exponential(before, now, count, stride, &mut workspace)?,
+        "EXPONENTIAL" => {
+            let filtered = decode_vertex_buffer(count, stride, old, &mut workspace).ok()?;
+            exponential(filtered, (before, now), (count, stride), &mut workspace)?
+        }
         // What the others hold are no positions.
         _ => return None,
     };
@@ -168,40 +171,47 @@ fn encode_view(
     Some(())
 }
 
-/// What the filter for floats may give an exponent to.
-const EXPONENTS: [ExpMode; 4] = [
-    ExpMode::SharedVector,
-    ExpMode::Separate,
-    ExpMode::SharedComponent,
-    ExpMode::Clamped,
-];
-
-/// The most bits of a mantissa that the filter has.
-const MOST_BITS: u32 = 24;
-
-/// Floats through the filter as the host's went: its stream does not tell the bits and what has an exponent, so the first are taken with which
-/// the host's come out as they went in. The filtered bytes, and what comes of them; `None` if vertices that did not change would.
+/// Floats through the filter as the host's went, which `filtered` is: what did not change stays as it is there; what did keeps its exponent, or the
+/// least one above with which its mantissa is no larger than the host's largest. So few bits differ, and as many are there as the host has. The
+/// filtered bytes, and what comes of them.
 fn exponential(
-    host: &[u8],
-    new: &[u8],
-    count: usize,
-    stride: usize,
+    filtered: Vec<u8>,
+    (host, new): (&[u8], &[u8]),
+    (count, stride): (usize, usize),
     workspace: &mut Workspace,
 ) -> Option<(Vec<u8>, Vec<u8>)> {
-    let mut through = |bytes: &[u8], mode: ExpMode, bits: u32| {
-        let numbers = bytes.as_chunks().0.iter().copied().map(f32::from_le_bytes);
-        let numbers: Vec<f32> = numbers.collect();
-        let filtered = encode_filter_exp(count, stride, bits, &numbers, mode, workspace).ok()?;
-        let mut seen = filtered.clone();
-        decode_filter_exp(&mut seen, count, stride, workspace).ok()?;
-        Some((filtered, seen))
+    let parts = |word: &[u8; 4]| {
+        let word = i32::from_le_bytes(*word);
+        (
+            word >> MANTISSA_BITS,
+            (word << EXPONENT_BITS) >> EXPONENT_BITS,
+        )
     };
-    let mut choices = (1..=MOST_BITS).flat_map(|bits| EXPONENTS.map(|mode| (mode, bits)));
-    let (mode, bits) = choices
-        .find(|&(mode, bits)| through(host, mode, bits).is_some_and(|(_, seen)| seen == host))?;
-    let (filtered, seen) = through(new, mode, bits)?;
-    let vertices = host.chunks(stride).zip(new.chunks(stride));
-    let mut all = vertices.zip(seen.chunks(stride));
-    all.all(|((host, new), seen)| host != new || seen == host)
-        .then_some((filtered, seen))
+    let mut words = filtered;
+    let mantissas = words.as_chunks().0.iter().map(|word| parts(word).1);
+    let largest = mantissas.map(i32::unsigned_abs).max()?.max(1);
+    let numbers = host.as_chunks::<4>().0.iter().zip(new.as_chunks().0);
+    for (word, (host, new)) in words.as_chunks_mut().0.iter_mut().zip(numbers) {
+        if host == new {
+            continue;
+        }
+        let number = f64::from(f32::from_le_bytes(*new));
+        let (least, _) = parts(word);
+        let (exponent, mantissa) = (least..=MOST_EXPONENT)
+            .map(|exponent| {
+                let scaled = libm::scalbn(number, exponent.saturating_neg());
+                (exponent, libm::rint(scaled))
+            })
+            .find(|(_, mantissa)| mantissa.abs() <= f64::from(largest))?;
+        let mantissa = mantissa as i32 & ((1 << MANTISSA_BITS) - 1);
+        *word = (exponent << MANTISSA_BITS | mantissa).to_le_bytes();
+    }
+    let mut seen = words.clone();
+    decode_filter_exp(&mut seen, count, stride, workspace).ok()?;
+    Some((words, seen))
 }
+
+/// Of a filtered number (EXT_meshopt_compression, "EXPONENTIAL filter"): the low bits are the mantissa, the high ones the exponent of 2.
+const MANTISSA_BITS: u32 = 24;
+const EXPONENT_BITS: u32 = 8;
+const MOST_EXPONENT: i32 = 100; // what the filter is specified for

@@ -93,21 +93,15 @@ pub fn by_draco(mesh: &Mesh, speed: i32, bits: i32) -> Vec<u8> {
 }
 
 /// The mesh by meshopt: positions with or without the filter for floats.
-pub fn by_meshopt(mesh: &Mesh, name: &str, version: u8, filter: Option<&str>) -> Vec<u8> {
+pub fn by_meshopt(mesh: &Mesh, name: &str, version: u8, exponents: Option<ExpMode>) -> Vec<u8> {
     let mut workspace = Workspace::new(Limits::default());
     let (count, indices) = (mesh.positions.len(), mesh.triangles.as_flattened());
     let bytes_of_index = index_type(mesh).1;
-    let plain = match filter {
+    let plain = match exponents {
         None => bytes_of(&floats(mesh)),
-        Some(_) => encode_filter_exp(
-            count,
-            12,
-            15,
-            &floats(mesh),
-            ExpMode::Separate,
-            &mut workspace,
-        )
-        .expect("filtered"),
+        Some(mode) => {
+            encode_filter_exp(count, 12, 15, &floats(mesh), mode, &mut workspace).expect("filtered")
+        }
     };
     let encoding = VertexEncoding::new(version, 2).expect("a version");
     let vertices =
@@ -124,8 +118,8 @@ pub fn by_meshopt(mesh: &Mesh, name: &str, version: u8, filter: Option<&str>) ->
     let mut of_positions = json!({
         "buffer": 0, "byteOffset": 0, "byteLength": vertices.len(), "byteStride": 12, "count": count, "mode": "ATTRIBUTES",
     });
-    if let Some(filter) = filter {
-        of_positions["filter"] = json!(filter);
+    if exponents.is_some() {
+        of_positions["filter"] = json!("EXPONENTIAL");
     }
     let of_indices = json!({
         "buffer": 0, "byteOffset": start, "byteLength": corners.len(), "byteStride": bytes_of_index, "count": indices.len(), "mode": "TRIANGLES",

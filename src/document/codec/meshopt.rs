@@ -189,7 +189,10 @@ fn exponential(
     };
     let mut words = filtered;
     let mantissas = words.as_chunks().0.iter().map(|word| parts(word).1);
-    let largest = mantissas.map(i32::unsigned_abs).max()?.max(1);
+    let largest = mantissas
+        .map(i32::unsigned_abs)
+        .max()?
+        .clamp(1, MOST_MANTISSA);
     let numbers = host.as_chunks::<4>().0.iter().zip(new.as_chunks().0);
     for (word, (host, new)) in words.as_chunks_mut().0.iter_mut().zip(numbers) {
         if host == new {
@@ -214,4 +217,5 @@ fn exponential(
 /// Of a filtered number (EXT_meshopt_compression, "EXPONENTIAL filter"): the low bits are the mantissa, the high ones the exponent of 2.
 const MANTISSA_BITS: u32 = 24;
 const EXPONENT_BITS: u32 = 8;
+const MOST_MANTISSA: u32 = (1 << (MANTISSA_BITS - 1)) - 1; // one more would be read as negative
 const MOST_EXPONENT: i32 = 100; // what the filter is specified for

@@ -166,6 +166,22 @@ impl Carrier {
         }
     }
 
+    /// The same of a mesh to which nothing was done but to turn it: nothing is undone.
+    pub(crate) fn read_untouched(
+        self,
+        mesh: &Mesh,
+        key: &Key,
+        is_settled: &dyn Fn(&Reading) -> bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Reading, Cancelled> {
+        match self {
+            Carrier::Solid => solid::Suspect::new(mesh)
+                .with(solid::Surfaces::untouched)
+                .read_until(key, is_settled, progress),
+            _ => self.read_until(mesh, key, is_settled, progress),
+        }
+    }
+
     /// The same of a mesh that lies on a host, and was read there: how it was turned and stretched is known, if the host has axes that say so.
     pub(crate) fn read_beside(
         self,

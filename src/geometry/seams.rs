@@ -55,7 +55,7 @@ pub fn seams(mesh: &Mesh) -> Seams {
     };
     let mut merged = merged(&mesh.positions, &points, &reaches, |vertex, other| {
         let [a, b] = [vertex as usize, other as usize];
-        parts[a] != parts[b] || open[a] && open[b] || is_rounded(vertex, other)
+        parts[a] != parts[b] || open[a] || open[b] || is_rounded(vertex, other)
     });
     let sheets = sheets(mesh, &merged, &parts_of_triangles);
     merged.retain(|&(vertex, first)| {

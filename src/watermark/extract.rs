@@ -8,8 +8,8 @@ use crate::bits::Payload;
 use crate::carrier::{Carrier, Reading};
 use crate::evidence::Evidence;
 use crate::key::Key;
-use crate::mesh::Edges;
-use crate::progress::Stage;
+use crate::mesh::{Edges, Mesh};
+use crate::progress::{Cancelled, Progress, Stage};
 
 /// Measures a suspect: everything that needs no key. What is measured once can be tested with as many keys as there are.
 ///
@@ -72,7 +72,7 @@ pub fn detect<'a>(
     key: &Key,
     expected: Option<Payload>,
 ) -> Result<Extraction, Error> {
-    read_in_one_go(suspect.into(), key, expected, None)
+    read_in_one_go(suspect.into(), key, expected, None, Carrier::read_until)
 }
 
 /// The same, and looks for what LOCAL marked too: it is found in a piece that was cut out, and then simplified or remeshed. That takes seconds.
@@ -89,15 +89,41 @@ pub fn detect_with_local<'a>(
     key: &Key,
     expected: Option<Payload>,
 ) -> Result<Extraction, Error> {
-    read_in_one_go(suspect.into(), key, expected, Some(Carrier::Local))
+    read_in_one_go(
+        suspect.into(),
+        key,
+        expected,
+        Some(Carrier::Local),
+        Carrier::read_until,
+    )
 }
 
+/// Reads what was marked just now, also with a carrier that was asked for. A detector that undoes what may have been done to a copy finds
+/// no less.
+pub(super) fn read_back(
+    copy: Suspect,
+    key: &Key,
+    asked: Option<Carrier>,
+) -> Result<Extraction, Error> {
+    read_in_one_go(copy, key, None, asked, Carrier::read_untouched)
+}
+
+/// How a carrier is read: [`Carrier::read_until`], or with less patience.
+type Read = fn(
+    Carrier,
+    &Mesh,
+    &Key,
+    &dyn Fn(&Reading) -> bool,
+    &mut dyn Progress,
+) -> Result<Reading, Cancelled>;
+
 /// Reads with the carriers that hold payloads, and with one that was asked for.
-pub(super) fn read_in_one_go(
+fn read_in_one_go(
     mut suspect: Suspect,
     key: &Key,
     expected: Option<Payload>,
     asked: Option<Carrier>,
+    read: Read,
 ) -> Result<Extraction, Error> {
     suspect.step(Stage::Read, 0.0)?;
     let mesh = suspect.mesh()?;
@@ -106,13 +132,13 @@ pub(super) fn read_in_one_go(
     let mut readings = Carrier::STANDARD.map(|_| Default::default());
     for carrier in Carrier::QUICKEST_FIRST {
         let is_settled = |reading: &Reading| judge.is_settled(reading);
-        readings[carrier as usize] = carrier.read_until(&mesh, key, &is_settled, &mut suspect)?;
+        readings[carrier as usize] = read(carrier, &mesh, key, &is_settled, &mut suspect)?;
     }
-    let mut read = |carrier: Carrier| {
-        let reading = carrier.read_until(&mesh, key, &|_| false, &mut suspect);
+    let mut read_asked = |carrier: Carrier| {
+        let reading = read(carrier, &mesh, key, &|_| false, &mut suspect);
         reading.map(|reading| (carrier, reading))
     };
-    let asked = asked.map(&mut read).transpose()?;
+    let asked = asked.map(&mut read_asked).transpose()?;
     let mut conclusion = judge.conclude_with(&readings, asked);
     let carriers = &conclusion.details().carriers;
     let piece = carriers.iter().find_map(|carrier| carrier.piece);

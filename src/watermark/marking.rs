@@ -1,7 +1,7 @@
 //! Marking: read, displace, write, and read back as any detector would.
 
 use super::displace::{Moved, Used, displacement, write};
-use super::extract::read_in_one_go;
+use super::extract::read_back;
 use super::read_back::{is_read, is_seen_at_once};
 use super::report::Unshown;
 use super::unshown::{UsedByMesh, mark_unshown};
@@ -60,7 +60,7 @@ fn hold_content(
     marked_files.extend(marked.written.files.clone());
     let copy = Model::new(&marked.written.model).with_files(&marked_files);
     let copy = copy.with_progress(model).into();
-    let read_back = read_in_one_go(copy, key, None, options.asked())?;
+    let read_back = read_back(copy, key, options.asked())?;
     if !is_read(&read_back, payload) {
         return Err(unreadable());
     }

@@ -102,6 +102,24 @@ fn seams_lose_no_triangle() {
     );
 }
 
+/// A fin that grows out of a surface and comes back to it ends in the midst of it, where no vertex has an edge with one triangle.
+#[wasm_bindgen_test(unsupported = test)]
+fn seams_close_where_a_fin_ends_in_the_midst_of_its_own_surface() {
+    for gap in [1e-4, 1e-7] {
+        let across = [0.0, 1.0, 2.0].map(|x| (x, 0.0));
+        let back = [(2.0, 1.0), (1.0, 1.0), (1.0, gap)];
+        let rows = across.into_iter().chain(back);
+        let positions = rows.flat_map(|(x, z)| [0.0, 1.0, 2.0].map(|y| DVec3::new(x, y, z)));
+        let quads = (0..5).flat_map(|row| [3 * row, 3 * row + 1]);
+        let halves = quads.flat_map(|a| [[a, a + 1, a + 3], [a + 3, a + 1, a + 4]]);
+        let fin = Mesh {
+            positions: positions.collect(),
+            triangles: halves.collect(),
+        };
+        assert_eq!(seams(&fin).merged, [(15, 3), (16, 4), (17, 5)], "{gap}");
+    }
+}
+
 /// Two sides of a leaf, as two sheets close to each other, stay two; where they are parted by rounding alone they are one.
 #[wasm_bindgen_test(unsupported = test)]
 fn seams_lay_no_sheet_upon_another() {

@@ -171,7 +171,7 @@ impl Search<'_> {
         for (candidate, least) in to_refine {
             // What is less than the best of so many that chance gives leads nowhere, and there is no need where all is clear.
             let is_worth_it =
-                |candidate: &&Candidate| candidate.evidence >= least && !self.is_sure();
+                |candidate: &&Candidate| candidate.evidence >= least && !self.is_clear();
             let Some(candidate) = candidate.filter(is_worth_it) else {
                 continue;
             };

@@ -24,9 +24,9 @@ const ENOUGH: f64 = 40.0;
 /// Strengths that are tried between two nodes, the further node included.
 pub const STRENGTHS: usize = 8;
 
-/// The share of the time that a search takes before it tries stretches, and the share of one which ends in a scan, before that.
+/// The share of the time of a search that a scan takes, where it begins with one, and of the rest what comes before stretches.
+const SHARE_OF_SCAN: f64 = 0.7;
 const SHARE_BEFORE_STRETCHES: f64 = 0.5;
-const SHARE_BEFORE_SCAN: f64 = 0.3;
 
 /// Ways of reading that are followed, of each kind.
 pub const FOLLOWED: usize = 2;
@@ -108,8 +108,8 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Looks at the rest of a suspect's surfaces in their order, until it is sure; then, if it may search widely, tries stretches and, where
-    /// axes are undetermined, scans.
+    /// Goes on until it is sure: scans, where axes are undetermined, looks at the rest of a suspect's surfaces in their order, and tries
+    /// stretches. It scans and stretches only where it may search widely.
     pub fn go_on(
         &mut self,
         surfaces: &mut dyn Iterator<Item = Cow<'a, Surface>>,
@@ -117,15 +117,17 @@ impl<'a> Search<'a> {
         progress: &mut dyn Progress,
     ) -> Result<(), Cancelled> {
         let axes = self.nodes[0].surface.axes;
-        let scans = is_wide && axes.contains(&Axes::Undetermined);
-        let share = if scans { SHARE_BEFORE_SCAN } else { 1.0 };
+        let mut start = 0.0;
+        if is_wide && axes.contains(&Axes::Undetermined) {
+            self.scan(axes, &mut |part| {
+                step(progress, Stage::Test, SHARE_OF_SCAN * part)
+            })?;
+            start = SHARE_OF_SCAN;
+        }
+        let mut report = |part| step(progress, Stage::Test, start + (1.0 - start) * part);
         let mut looked = 0.0;
         while !self.is_sure() {
-            step(
-                progress,
-                Stage::Test,
-                share * SHARE_BEFORE_STRETCHES * looked,
-            )?;
+            report(SHARE_BEFORE_STRETCHES * looked)?;
             let Some(surface) = surfaces.next() else {
                 break;
             };
@@ -134,12 +136,8 @@ impl<'a> Search<'a> {
         }
         if is_wide && !self.is_sure() {
             self.stretch(&mut |part| {
-                let part = SHARE_BEFORE_STRETCHES + (1.0 - SHARE_BEFORE_STRETCHES) * part;
-                step(progress, Stage::Test, share * part)
+                report(SHARE_BEFORE_STRETCHES + (1.0 - SHARE_BEFORE_STRETCHES) * part)
             })?;
-        }
-        if scans && !self.is_sure() {
-            self.scan(axes, progress)?;
         }
         Ok(())
     }
@@ -160,13 +158,16 @@ impl<'a> Search<'a> {
         search
     }
 
+    /// Whether the pilots agree so well that nothing else needs to be tried.
     pub fn is_sure(&self) -> bool {
-        let best = self
-            .own
-            .iter()
-            .chain(&self.undone)
-            .map(|candidate| candidate.evidence);
-        best.fold(0.0, f64::max) >= ENOUGH
+        let scanned = self.scanned.as_ref();
+        self.is_clear() || scanned.is_some_and(|found| found.evidence >= ENOUGH)
+    }
+
+    /// Whether they do so in a way of reading that needs no refinement: a scan only comes near the right turn.
+    pub fn is_clear(&self) -> bool {
+        let mut best = self.own.iter().chain(&self.undone);
+        best.any(|candidate| candidate.evidence >= ENOUGH)
     }
 
     /// Looks at a surface, and at those between it and the last of its family.
@@ -305,14 +306,16 @@ impl<'a> Search<'a> {
     }
 
     /// Turns the suspect about the axes that its frame cannot tell apart.
-    fn scan(&mut self, axes: [Axes; 2], progress: &mut dyn Progress) -> Result<(), Cancelled> {
+    fn scan(
+        &mut self,
+        axes: [Axes; 2],
+        report: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
+    ) -> Result<(), Cancelled> {
         let suspect = &self.nodes[0];
         let pitches = &suspect.surface.pitches;
-        let share = (1.0 - SHARE_BEFORE_SCAN) / pitches.len() as f64;
         for (number, &pitch) in pitches.iter().enumerate() {
-            let start = SHARE_BEFORE_SCAN + share * number as f64;
             let found = scan(&suspect.clusters, pitch, axes, &self.lattice, &mut |part| {
-                step(progress, Stage::Test, start + share * part)
+                report((number as f64 + part) / pitches.len() as f64)
             })?;
             let best = self.scanned.as_ref().map_or(0.0, |best| best.evidence);
             if found.evidence > best {

@@ -42,6 +42,7 @@ pub struct Surfaces {
     /// What is measured next: the suspect, the refined one, the first family, the others, those that held boundaries.
     next: usize,
     stages: usize,
+    may_be_stretched: bool,
     ready: VecDeque<Surface>,
 }
 
@@ -61,6 +62,7 @@ impl Surfaces {
             area,
             next: 0,
             stages: STAGES,
+            may_be_stretched: true,
             ready: VecDeque::new(),
         }
     }
@@ -159,7 +161,9 @@ impl Surfaces {
                     None => axes_of(&own),
                 },
                 // Who knows how a suspect lies knows too that nobody stretched it.
-                stretchable: (origin == Origin::Suspect && self.facing.is_none())
+                stretchable: (origin == Origin::Suspect
+                    && self.facing.is_none()
+                    && self.may_be_stretched)
                     .then(|| Stretchable::of(&own)),
                 pitches,
                 store: Store::new(&clusters(&mesh, &own, finest), finest),
@@ -187,6 +191,14 @@ impl Surfaces {
     pub fn plain(mut self) -> Surfaces {
         self.stages = 1;
         self
+    }
+
+    /// The same, where nobody stretched it either.
+    pub fn untouched(self) -> Surfaces {
+        Surfaces {
+            may_be_stretched: false,
+            ..self.plain()
+        }
     }
 
     /// Only what undoes nothing, chords or the first kind of smoothing.

@@ -100,6 +100,7 @@ pub(super) fn embed_in(
             .into_iter()
             .chain(strays)
             .chain(unpacked(&written))
+            .chain(larger(&model, &written))
             .chain(about_asked)
             .collect(),
         strength: options.strength.rms_rel(),
@@ -194,6 +195,29 @@ pub(super) fn unpacked(written: &Written) -> Vec<String> {
         format!("the host is compressed ({name}), and the copy is not: compress it again, and check what comes of it")
     });
     words.collect()
+}
+
+/// A compressed copy may be so much larger than its host before the report says so.
+const LARGER: f64 = 0.03;
+
+/// What is said of a compressed copy that is noticeably larger than its host.
+fn larger(host: &Model, written: &Written) -> Option<String> {
+    if !written.unpacked.is_empty() {
+        return None;
+    }
+    let changed = |files: &Files| -> usize {
+        let buffers = written.files.keys().filter_map(|name| files.get(name));
+        buffers.map(|buffer| buffer.len()).sum()
+    };
+    let before = host.bytes.len() + changed(host.files);
+    let after = written.model.len() + changed(&written.files);
+    let growth = after as f64 / before as f64 - 1.0;
+    (growth > LARGER).then(|| {
+        format!(
+            "the copy is {:.1} % larger than its host: where vertices lie in a regular way a codec needs few bytes, and a mark disturbs that",
+            100.0 * growth
+        )
+    })
 }
 
 /// What its owner should know of a mark: that it holds no payload, that the usual steps of a web pipeline take it, and what may be seen

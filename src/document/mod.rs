@@ -72,6 +72,8 @@ pub struct Written {
     pub model: Vec<u8>,
     /// The external buffers that changed, by the names they were handed in with.
     pub files: Files,
+    /// Whether it is compressed, as its host was.
+    pub is_packed: bool,
     /// The compression that the file had and has no more: of a document that changed, all of it.
     pub unpacked: Vec<&'static str>,
 }
@@ -227,6 +229,7 @@ impl Document {
             Some(packed) if !is_changed => Ok(Written {
                 model: packed.model.clone(),
                 files: Files::new(),
+                is_packed: true,
                 unpacked: Vec::new(),
             }),
             #[cfg(feature = "codec")]
@@ -285,6 +288,7 @@ impl Document {
         Ok(Some(Written {
             model: model(splice)?,
             files: again.files,
+            is_packed: true,
             unpacked: Vec::new(),
         }))
     }
@@ -350,6 +354,7 @@ impl Document {
         Ok(Written {
             model,
             files,
+            is_packed: false,
             unpacked: unpacked.to_vec(),
         })
     }

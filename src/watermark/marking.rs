@@ -1,4 +1,4 @@
-//! Marking: read, displace, write, and read back as any detector would.
+//! Marking: read, displace, write, and read back.
 
 use super::displace::{Moved, Used, displacement, write};
 use super::extract::read_back;

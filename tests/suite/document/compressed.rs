@@ -107,6 +107,7 @@ fn compressed_documents_are_written_as_they_were() {
         let written = document.write().expect(name);
         let again = Document::read(&written.model, &Files::new()).expect(name);
         assert_eq!(written.unpacked, [""; 0], "{name}");
+        assert!(written.is_packed, "{name}");
         assert_eq!(
             without_places(text_of(&written.model)),
             without_places(text_of(&model)),

@@ -58,8 +58,10 @@ for (const [name, transforms] of Object.entries(variants)) {
     assert.deepEqual(await contentOf(plain.model), await contentOf(model));
     const { model: marked, report } = embed(model, TAG, key);
     t.diagnostic(`${model.length} bytes, marked ${marked.length}, ln p ${report.readBack.lnP.toFixed(1)}`);
-    assert.deepEqual(report.warnings, []);
-    assert.ok(marked.length < 1.1 * model.length, `${marked.length} bytes of ${model.length}`); // a moved surface is less regular
+    const growth = marked.length / model.length - 1; // a moved surface is less regular
+    assert.ok(growth < 0.1, `${marked.length} bytes of ${model.length}`);
+    const larger = `the copy is ${(100 * growth).toFixed(1)} % larger than its host`;
+    assert.deepEqual(report.warnings.map((text) => text.split(":")[0]), growth > 0.03 ? [larger] : []);
     await assertNoNewErrors(model, marked);
     assert.equal(detect(marked, key).tag, TAG);
     // Others decode what was encoded here to what is decoded here.

@@ -1,6 +1,7 @@
 //! A surface in small pieces: each cell of a fine grid keeps of the surface in it a centroid, an area vector and the first
 //! moment `m = sum (y - centroid) . a`. What a window sees of a cell then takes a few operations, however many triangles there are.
 
+use super::grid::floor;
 use super::lattice::RADIUS;
 use crate::geometry::{Pose, Quadrature};
 use crate::mesh::Mesh;
@@ -63,7 +64,7 @@ pub fn clusters(mesh: &Mesh, pose: &Pose, pitch: f64) -> Vec<Cluster> {
             if y.abs().max_element() >= EXTENT {
                 continue;
             }
-            let corner = (y / cell).floor();
+            let corner = DVec3::from_array((y / cell).to_array().map(|c| f64::from(floor(c))));
             let offset = y - corner * cell;
             let sum = cells.at(number(corner));
             sum.centre += offset * weight;

@@ -153,7 +153,10 @@ impl Rounds<'_> {
         for round in 0..=ROUNDS {
             let fraction = round as f64 / ROUNDS as f64;
             crate::progress::step(progress, Stage::Embed, fraction)?;
-            let phases = self.phases(&self.moved(&state.displacement), step);
+            let phases = match round {
+                0 => self.phases_of_host(step),
+                _ => self.phases(&self.moved(&state.displacement), step),
+            };
             let exponent = exponent(&phases, self.active);
             if exponent > best.exponent {
                 best.exponent = exponent;
@@ -185,9 +188,7 @@ impl Rounds<'_> {
         let rounds = if is_thorough { ROUNDS } else { ROUNDS_AGAIN };
         for round in 0..rounds {
             let phases = match round {
-                0 => (self.active.iter())
-                    .map(|window| window.flux / step + window.dither)
-                    .collect(),
+                0 => self.phases_of_host(step),
                 _ => self.phases(&self.moved(&state.displacement), step),
             };
             self.round(&phases, choice, 1, &mut state);
@@ -264,6 +265,12 @@ impl Rounds<'_> {
             .map(square)
             .sum();
         (squares / displacement.len() as f64).sqrt()
+    }
+
+    /// The phases of the host's fluxes at the active windows.
+    fn phases_of_host(&self, step: f64) -> Vec<f64> {
+        let phase = |window: &Window| window.flux / step + window.dither;
+        self.active.iter().map(phase).collect()
     }
 
     /// The phases of the displaced mesh's fluxes at the active windows, in its own frame, the axes' signs as the host's: where parts

@@ -22,7 +22,7 @@ use std::time::Instant;
 const REMESHED: f64 = 0.01;
 
 /// What other people's programs are told, where they are there: to halve a model, and else.
-const HALVING: [&str; 6] = [
+pub const HALVING: [&str; 6] = [
     "glTF-Transform simplify --ratio 0.5 --error 1",
     "gltfpack -si 0.5",
     "meshoptimizer simplify 50%",

@@ -9,6 +9,7 @@ mod cell;
 mod challenge;
 mod crafted;
 mod false_positives;
+mod forecast;
 mod found;
 mod grid;
 mod informed;
@@ -93,6 +94,10 @@ struct Arguments {
     /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.
     #[arg(long, value_name = "STRENGTH", groups = ["instead", "keyed"], conflicts_with_all = ["full"])]
     informed: Option<String>,
+    /// Instead of the grid: whether marks are found after simplification where the forecast says so; prints a table. Of all models, or of all .glb
+    /// and .obj of --models that have 200 vertices and more. With --real, in programs that people have.
+    #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = ["quick", "full"])]
+    forecast: Option<String>,
     /// Instead of the grid: copies at a strength that leak, alone or mixed by several buyers, and who is named; prints a table.
     #[arg(long, value_name = "STRENGTH", group = "instead", conflicts_with_all = GRID)]
     trace: Option<String>,
@@ -231,6 +236,14 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             &tools,
             arguments.low_poly,
         );
+    }
+    if let Some(name) = &arguments.forecast {
+        let models = match &arguments.models {
+            Some(folder) => models::of_folder(folder, FEWEST_INFORMED)?,
+            None => models::all(None)?.0,
+        };
+        let tools = real_tools(arguments, &target)?;
+        return forecast::table(&models, named_strength(name)?, &Seed::new(seed), &tools);
     }
     if let Some(name) = &arguments.trace {
         let (models, _) = models::all(arguments.models.as_deref())?;

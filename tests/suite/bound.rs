@@ -271,7 +271,8 @@ fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
     hold_surfaces(name, &plain.collect(), keys);
 }
 
-/// A commit tries so many keys on each surface, which give each a test below one tenth; `cargo xtask test --all` tries more.
+/// A commit tries so many keys on each surface, which give each a test below one tenth; `cargo xtask test --all` tries more, and suspects
+/// that take a scan for each key.
 const KEYS: u64 = 200;
 const ALL_KEYS: u64 = 1_000;
 
@@ -327,21 +328,6 @@ fn bound_holds_for_layers() {
 #[test]
 fn bound_holds_for_regular_grids() {
     hold_mesh("a box", &a_box(), KEYS);
-}
-
-#[test]
-fn bound_holds_for_identical_boxes() {
-    hold_mesh("identical boxes", &identical_boxes(), KEYS);
-}
-
-#[test]
-fn bound_holds_for_a_mirrored_pair() {
-    hold_mesh("mirrored pair", &mirrored_pair(), KEYS);
-}
-
-#[test]
-fn bound_holds_without_flux() {
-    hold_mesh("doubled sheets", &doubled_sheets(5e-4), KEYS);
 }
 
 /// What undoes something too: the symbols that are no pilots are tested where the pilots agree best among thousands of ways.

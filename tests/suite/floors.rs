@@ -71,16 +71,18 @@ fn marked_meshes() -> Vec<Marked> {
 
 /// Every attack on every mesh.
 ///
-/// The sample: every chain on every mesh; and each attack on one mesh, the meshes taking turns, at the strongest level that
+/// The sample: each chain and each attack on one mesh, the meshes taking turns, at the strongest level that
 /// has a floor there. An attack that has no floor on the mesh whose turn it is goes to the next that has.
 fn cells(meshes: &[Marked]) -> Vec<Cell<'_>> {
     let mut cells = Vec::new();
-    for mesh in meshes {
-        cells.extend(CHAINS.map(|names| Cell {
-            mesh,
-            steps: names.iter().map(|name| step(name).unwrap()).collect(),
-            is_sample: true,
-        }));
+    for (place, mesh) in meshes.iter().enumerate() {
+        for (turn, names) in CHAINS.iter().enumerate() {
+            cells.push(Cell {
+                mesh,
+                steps: names.iter().map(|name| step(name).unwrap()).collect(),
+                is_sample: turn == place,
+            });
+        }
     }
     for (turn, attack) in CATALOGUE.iter().enumerate() {
         let first = cells.len();

@@ -324,7 +324,12 @@ fn embed_stops_when_asked_at_any_stage() {
             Stage::Forecast
         ]
     );
-    for stop in 0..stages.len() {
+    // At the first and the last report of each stage, and between.
+    let is_end = |stop: &usize| {
+        let before = stop.checked_sub(1).map(|before| stages[before]);
+        before != Some(stages[*stop]) || stages.get(stop + 1) != Some(&stages[*stop])
+    };
+    for stop in (0..stages.len()).filter(|stop| is_end(stop) || stop % 9 == 0) {
         let mut left = stop;
         let mut listen = |_: Stage, _: f64| match left.checked_sub(1) {
             Some(fewer) => {

@@ -138,7 +138,7 @@ export type Verification = Extraction;
 export interface Forecast {
   /** "none", "web", "noise", "quantize", "smooth", "simplify-30", "simplify-50", "simplify-70" or "crop". */
   attack: string;
-  /** green: found with a wide margin; amber: found, barely; red: not found. */
+  /** green: found with a wide margin; amber: found, but another program may take it; red: not found. */
   level: "green" | "amber" | "red";
   /** Natural logarithm of the bound that the mark reached there. */
   lnP: number;

@@ -320,9 +320,9 @@ pub struct Unshown {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Level {
-    /// It is found with a wide margin: twice the exponent that is needed.
+    /// It is found with a wide margin: twice the exponent that is needed, eight times after simplification.
     Green,
-    /// It is found, barely.
+    /// It is found, but the margin is small, or says little: of such a shape other simplifiers leave less.
     Amber,
     /// It is not found.
     Red,

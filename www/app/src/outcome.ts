@@ -155,7 +155,7 @@ export function forecastList(forecast: Forecast[]): HTMLElement {
     "section",
     { class: "forecast", "aria-label": "What the mark survives" },
     h("h3", {}, "What the mark survives"),
-    h("p", { class: "hint" }, "Each change was made to the marked copy, and the mark looked for in what was left. “Barely” may fail next time."),
+    h("p", { class: "hint" }, "Each change was made to the marked copy, and the mark looked for in what was left. “Maybe” was found too, and may be lost next time or by another program."),
     h("ul", {}, ...forecast.map(row)),
   );
 }

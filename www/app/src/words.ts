@@ -38,7 +38,7 @@ const ATTACKS: Record<string, AttackWords> = {
   crop: { name: "cutting 30 % of it away" },
 };
 
-export const LEVELS: Record<Forecast["level"], string> = { green: "Survives", amber: "Barely", red: "Lost" };
+export const LEVELS: Record<Forecast["level"], string> = { green: "Survives", amber: "Maybe", red: "Lost" };
 
 export function attackWords(attack: string): AttackWords {
   return ATTACKS[attack] ?? { name: attack };

@@ -320,7 +320,7 @@ pub struct Unshown {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Level {
-    /// It is found with a wide margin: twice the exponent that is needed, eight times after simplification.
+    /// It is found with a wide margin: twice the exponent that is needed, eight times where half of the triangles are gone or more.
     Green,
     /// It is found, but the margin is small, or says little: of such a shape other simplifiers leave less.
     Amber,

@@ -182,12 +182,22 @@ fn cli_finds_a_piece_by_local() {
             .success()
     );
 
-    let command = "verify piece.glb --local --tag ADA-1";
-    let (code, report, _) = here.run(&format!("{command} {ADA}"));
-    assert_eq!((code, &report["verdict"]), (0, &"present".into()));
-    let reason = report["reason"].as_str().unwrap();
-    assert!(reason.starts_with("Found by LOCAL, in "), "{reason}");
-    assert_eq!(report["carriers"][2]["name"], "local");
+    let (code, report, _) = here.run(&format!("extract piece.glb {ADA}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
+    for command in ["extract", "verify --tag ADA-1"] {
+        let (code, report, _) = here.run(&format!("{command} piece.glb --local {ADA}"));
+        assert_eq!(
+            (code, &report["verdict"]),
+            (0, &"present".into()),
+            "{command}"
+        );
+        let reason = report["reason"].as_str().unwrap();
+        assert!(reason.starts_with("Found by LOCAL, in "), "{reason}");
+        assert_eq!(report["carriers"][2]["name"], "local");
+    }
+    let other = "--owner Ada --passphrase-file other.txt";
+    let (code, report, _) = here.run(&format!("extract piece.glb --local {other}"));
+    assert_eq!((code, &report["verdict"]), (1, &"none".into()));
 
     let (code, ..) = here.run(&format!("extract piece.glb --local --evidence {ADA}"));
     assert_eq!(code, 2);

@@ -114,7 +114,7 @@ fn told(case: &Case, row: &Row, tools: &[&Tool]) -> Result<Told, String> {
     let own = to_glb(&own.apply(&marked.mesh, case.seed.number(&case.purpose, 0)));
     let mut is_found = vec![Some(is_read(case, marked, &own)?)];
     for tool in tools {
-        is_found.push(match simplified(case, marked, tool) {
+        is_found.push(match tool.run(&marked.bytes) {
             Ok(suspect) => Some(is_read(case, marked, &suspect)?),
             Err(said) => {
                 eprintln!("{}, {}: {said}", case.model.name, tool.name);
@@ -132,21 +132,6 @@ fn told(case: &Case, row: &Row, tools: &[&Tool]) -> Result<Told, String> {
         ln_p: forecast.ln_p,
         is_found,
     })
-}
-
-/// What a program makes of a marked model.
-fn simplified(case: &Case, marked: &Marked, tool: &Tool) -> Result<Vec<u8>, String> {
-    let name = format!(
-        "meshmark-forecast-{}-{}",
-        std::process::id(),
-        case.model.name
-    );
-    let scratch = std::env::temp_dir().join(name);
-    let said = |error| format!("{}: {error}", scratch.display());
-    std::fs::create_dir_all(&scratch).map_err(said)?;
-    let made = tool.run(&marked.bytes, &scratch);
-    std::fs::remove_dir_all(&scratch).map_err(said)?;
-    made
 }
 
 /// Whether a detector reads what was embedded.

@@ -6,7 +6,6 @@ use crate::models::gathered;
 use crate::real::Tool;
 use meshmark::internals::attack::{CATALOGUE, Family, Step, average, chain, step, warp};
 use meshmark::internals::mesh::Mesh;
-use std::path::PathBuf;
 
 /// What a row is for.
 #[derive(Clone, Copy, PartialEq)]
@@ -35,8 +34,8 @@ pub enum Suspect {
     Chain(Vec<Step>),
     /// With keys, or with what else a case knows.
     Keyed(Make),
-    /// By a program, from the marked file; in folders of this one.
-    Tool(Tool, PathBuf),
+    /// By a program, from the marked file.
+    Tool(Tool),
 }
 
 /// Attacks one after another.
@@ -94,11 +93,11 @@ impl Row {
     }
 
     /// A row of a program.
-    pub fn tool(tool: Tool, scratch: PathBuf) -> Row {
+    pub fn tool(tool: Tool) -> Row {
         Row {
             name: tool.name.clone(),
             kind: Kind::Real,
-            make: Suspect::Tool(tool, scratch),
+            make: Suspect::Tool(tool),
         }
     }
 
@@ -111,14 +110,9 @@ impl Row {
         match &self.make {
             Suspect::Chain(steps) => Ok(chain(marked, steps, seed)),
             Suspect::Keyed(make) => make(case, marked, seed),
-            Suspect::Tool(tool, scratch) => {
+            Suspect::Tool(tool) => {
                 let file = case.marked.as_ref().map_err(Clone::clone)?;
-                let folder = scratch.join(format!("{seed:x}"));
-                let said = |error| format!("{}: {error}", folder.display());
-                std::fs::create_dir_all(&folder).map_err(said)?;
-                let made = tool.run(&file.bytes, &folder);
-                std::fs::remove_dir_all(&folder).map_err(said)?;
-                gathered(&made?)
+                gathered(&tool.run(&file.bytes)?)
             }
         }
     }

@@ -57,17 +57,10 @@ impl Row<'_> {
     }
 
     fn make(&self, case: &Case, marked: &Marked, seed: u64) -> Result<Mesh, String> {
-        let tool = match self {
-            Row::Own(_, make) => return make(case, &marked.mesh, seed),
-            Row::Tool(tool) => tool,
-        };
-        let scratch =
-            std::env::temp_dir().join(format!("meshmark-informed-{}-{seed}", std::process::id()));
-        let said = |error| format!("{}: {error}", scratch.display());
-        std::fs::create_dir_all(&scratch).map_err(said)?;
-        let made = tool.run(&marked.bytes, &scratch);
-        std::fs::remove_dir_all(&scratch).map_err(said)?;
-        gathered(&made?)
+        match self {
+            Row::Own(_, make) => make(case, &marked.mesh, seed),
+            Row::Tool(tool) => gathered(&tool.run(&marked.bytes)?),
+        }
     }
 }
 

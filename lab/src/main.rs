@@ -281,7 +281,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
 fn robustness(arguments: &Arguments, seed: u64, target: &Path, path: &Path) -> Result<(), String> {
     let tools = real_tools(arguments, target)?;
     let (models, unread) = models::all(arguments.models.as_deref())?;
-    let scope = scope(arguments, models, tools, target);
+    let scope = scope(arguments, models, tools);
     let said = said(arguments);
     let program = program()?;
     let header = |seed| Header {
@@ -328,12 +328,7 @@ fn real_tools(arguments: &Arguments, target: &Path) -> Result<Vec<real::Tool>, S
     Ok(real::tools(&target.join("real"), arguments.blender))
 }
 
-fn scope(
-    arguments: &Arguments,
-    mut models: Vec<models::Model>,
-    tools: Vec<real::Tool>,
-    target: &Path,
-) -> Scope {
+fn scope(arguments: &Arguments, mut models: Vec<models::Model>, tools: Vec<real::Tool>) -> Scope {
     let mut rows = grid::rows();
     if arguments.quick {
         rows.retain(grid::Row::is_quick);
@@ -344,9 +339,7 @@ fn scope(
         _ => Size::Usual,
     };
     models.retain(|model| model.size <= size);
-    let scratch = target.join("lab-scratch");
-    let of_tool = |tool| grid::Row::tool(tool, scratch.clone());
-    rows.extend(tools.into_iter().map(of_tool));
+    rows.extend(tools.into_iter().map(grid::Row::tool));
     Scope {
         models,
         rows,

@@ -7,6 +7,7 @@ use meshmark::internals::mesh::Mesh;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use tempfile::TempDir;
 
 /// The exact versions, as they are installed.
 const LOCKS: [&str; 3] = [
@@ -226,14 +227,15 @@ pub fn tools(folder: &Path, with_blender: bool) -> Vec<Tool> {
 }
 
 impl Tool {
-    /// What the tool makes of a `.glb`, as a `.glb` without compression. `scratch` is a folder for this run alone.
+    /// What the tool makes of a `.glb`, as a `.glb` without compression.
     ///
     /// # Errors
     /// The tool's own words, or that the result is no mesh of about the model's shape.
-    pub fn run(&self, model: &[u8], scratch: &Path) -> Result<Vec<u8>, String> {
+    pub fn run(&self, model: &[u8]) -> Result<Vec<u8>, String> {
         let (program, words) = self.runner;
+        let scratch = TempDir::new().map_err(|error| format!("a folder for files: {error}"))?;
         let [source, result, plain] =
-            ["source", "result", "plain"].map(|name| scratch.join(name).with_extension("glb"));
+            ["source.glb", "result.glb", "plain.glb"].map(|name| scratch.path().join(name));
         fs::write(&source, model).map_err(|error| format!("{}: {error}", source.display()))?;
         let mut bytes = produced(
             &mut program.command(&self.folder, words, &source, &result),
@@ -259,7 +261,6 @@ impl Tool {
 /// The file that a command wrote, or what it complained of.
 fn produced(command: &mut Command, file: &Path) -> Result<Vec<u8>, String> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let _ = fs::remove_file(file); // of another run
     let output = command
         .env("NO_COLOR", "1")
         .env("OMP_WAIT_POLICY", "passive") // or threads that wait keep other rows from the cores
@@ -331,13 +332,10 @@ mod tests {
 
     #[test]
     fn what_is_not_installed_says_so() {
-        let scratch = std::env::temp_dir().join(format!("meshmark-real-{}", std::process::id()));
-        fs::create_dir_all(&scratch).expect("a folder for temporary files");
         let model = to_glb(&shapes::low_poly());
-        for tool in tools(&scratch, true) {
-            assert!(tool.run(&model, &scratch).is_err(), "{}", tool.name);
+        for tool in tools(Path::new("nowhere"), true) {
+            assert!(tool.run(&model).is_err(), "{}", tool.name);
         }
-        fs::remove_dir_all(&scratch).expect("what was just made");
     }
 
     #[test]

@@ -133,7 +133,7 @@ impl Report<'_> {
     fn versions(&self, text: &mut String) {
         let mut programs: Vec<&str> = Vec::new();
         for row in &self.scope.rows {
-            if let Suspect::Tool(tool, _) = &row.make
+            if let Suspect::Tool(tool) = &row.make
                 && !programs.contains(&&*tool.program)
             {
                 programs.push(&tool.program);

@@ -93,7 +93,7 @@ impl Column {
     }
 
     /// What becomes of a marked file, as a `.glb`.
-    fn apply(&self, marked: &Opened, mesh: &Mesh, scratch: &Path) -> Result<Vec<u8>, String> {
+    fn apply(&self, marked: &Opened, mesh: &Mesh) -> Result<Vec<u8>, String> {
         match self {
             Column::Joined => Ok(to_glb(&Mesh::joined(marked.pieces()?))),
             Column::Grids => {
@@ -102,13 +102,7 @@ impl Column {
             }
             Column::Attack(step) => Ok(to_glb(&step.apply(mesh, 1))),
             Column::Tool(_) if !marked.files.is_empty() => Err("no .glb".to_owned()),
-            Column::Tool(tool) => {
-                let said = |error| format!("{}: {error}", scratch.display());
-                std::fs::create_dir_all(scratch).map_err(said)?;
-                let made = tool.run(&marked.bytes, scratch);
-                std::fs::remove_dir_all(scratch).map_err(said)?;
-                made
-            }
+            Column::Tool(tool) => tool.run(&marked.bytes),
         }
     }
 }
@@ -181,10 +175,8 @@ fn line(
         num_turned_over,
         format!("{seconds:.1}"),
     ];
-    let scratch =
-        std::env::temp_dir().join(format!("meshmark-wild-{}-{purpose}", std::process::id()));
     for column in columns {
-        let suspect = column.apply(&marked, &after, &scratch);
+        let suspect = column.apply(&marked, &after);
         cells.push(suspect.map_or_else(|said| said, |bytes| found(&bytes, &key, report)));
     }
     let class = match (report.number, report.is_fragile) {

@@ -20,6 +20,8 @@ export class Layer {
   readonly meshes: Mesh[] = [];
   /** Whether every mesh comes with normals of its own. */
   readonly hasNormals: boolean;
+  /** Whether a material of the file mirrors its surroundings. */
+  readonly hasMirrors: boolean;
   readonly #surfaces: { geometry: BufferGeometry; material: Material | Material[] }[];
   #hot: BufferGeometry[] | undefined;
   #smooth: BufferGeometry[] | undefined;
@@ -34,7 +36,9 @@ export class Layer {
     });
     this.hasNormals = this.meshes.every(({ geometry }) => geometry.hasAttribute("normal"));
     this.#surfaces = this.meshes.map(({ geometry, material }) => ({ geometry, material }));
-    this.#surfaces.flatMap(({ material }) => material).forEach((material) => Object.assign(material, BEHIND_WIRES));
+    const materials = this.#surfaces.flatMap(({ material }) => material);
+    materials.forEach((material) => Object.assign(material, BEHIND_WIRES));
+    this.hasMirrors = materials.some((material) => material instanceof MeshStandardMaterial && material.metalness > 0);
     this.#wires = this.meshes.map(wiresOf);
   }
 

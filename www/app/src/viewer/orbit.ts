@@ -4,6 +4,7 @@
  */
 import {
   DirectionalLight,
+  HemisphereLight,
   NeutralToneMapping,
   PerspectiveCamera,
   PMREMGenerator,
@@ -13,6 +14,7 @@ import {
   Vector2,
   Vector3,
   WebGLRenderer,
+  type Texture,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
@@ -26,6 +28,11 @@ export interface Lighting {
 /** Lights go with the eye: from over the left shoulder; or from far left, low over what faces the eye, where bumps throw shade. */
 export const SOFT: Lighting = { from: new Vector3(-1, 1.2, 1), intensity: 1.6, surroundings: 0.45 };
 export const RAKING: Lighting = { from: new Vector3(-1, 0.35, 0.15), intensity: 4.2, surroundings: 0.1 };
+
+/** Light from above and below in the stead of a room: about as much as from a room, on what mirrors nothing. */
+const SKY = 0xffffff;
+const GROUND = 0xa8a49c;
+const SKY_INTENSITY = 6;
 
 const FIELD_OF_VIEW = 32;
 const FIRST_DIRECTION = new Vector3(0.55, 0.35, 1).normalize();
@@ -52,6 +59,8 @@ export class Orbit {
   readonly #renderer: WebGLRenderer;
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW);
   readonly #light = new DirectionalLight();
+  readonly #sky = new HemisphereLight(SKY, GROUND);
+  #room: Texture | undefined;
   readonly #controls: OrbitControls;
   readonly #bounds = new Sphere();
   #frame = 0;
@@ -66,11 +75,7 @@ export class Orbit {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.#renderer.toneMapping = NeutralToneMapping;
-    const pmrem = new PMREMGenerator(this.#renderer);
-    // Without a blur before the filter: nobody sees it, and without a graphics card it takes half of a viewer's first second.
-    this.scene.environment = pmrem.fromScene(new RoomEnvironment()).texture;
-    pmrem.dispose();
-    this.scene.add(this.#camera.add(this.#light, this.#light.target));
+    this.scene.add(this.#camera.add(this.#light, this.#light.target), this.#sky);
 
     // One finger scrolls the page past a canvas, and turns the model once a tap has given it the focus: see `touch-action` in its style.
     canvas.addEventListener("pointerdown", ({ pointerType }) => (this.#controls.enabled = pointerType !== "touch" || document.activeElement === canvas), { capture: true });
@@ -119,10 +124,13 @@ export class Orbit {
     return { eye: relative(this.#camera.position), target: relative(this.#controls.target) };
   }
 
-  light({ from, intensity, surroundings }: Lighting): void {
+  /** What mirrors its surroundings, as metal does, is in a room; all else does without, for that takes four seconds to prepare where there is no graphics card. */
+  light({ from, intensity, surroundings }: Lighting, { isMirrored = false } = {}): void {
     this.#light.position.copy(from);
     this.#light.intensity = intensity;
+    this.scene.environment = isMirrored ? (this.#room ??= roomFor(this.#renderer)) : null;
     this.scene.environmentIntensity = surroundings;
+    this.#sky.intensity = isMirrored ? 0 : SKY_INTENSITY * surroundings;
     this.draw();
   }
 
@@ -224,4 +232,12 @@ export class Orbit {
       this.draw();
     }
   }
+}
+
+function roomFor(renderer: WebGLRenderer): Texture {
+  const pmrem = new PMREMGenerator(renderer);
+  // Without a blur before the filter: nobody sees it.
+  const { texture } = pmrem.fromScene(new RoomEnvironment());
+  pmrem.dispose();
+  return texture;
 }

@@ -114,7 +114,8 @@ export class Viewer {
 
   look(change: Partial<Look>): void {
     this.#look = { ...this.#look, ...change };
-    this.#orbit.light(this.#look.shading === "raking" && !this.#laidLook ? RAKING : SOFT);
+    const isMirrored = this.#look.shading === "surface" && !this.#laidLook && this.#layers[this.#look.version]?.hasMirrors;
+    this.#orbit.light(this.#look.shading === "raking" && !this.#laidLook ? RAKING : SOFT, { isMirrored });
     for (const version of ["before", "after"] as const) {
       this.#layers[version]?.show({ ...this.#look, visible: version === this.#look.version && !this.#laidLook });
     }

@@ -14,9 +14,10 @@ pub mod solid;
 
 pub use error::{CarrierError, StoredError};
 pub(crate) use error::{possible, take};
-pub use reading::{Hypothesis, Reading};
+pub use reading::{Hypothesis, Place, Reading, Way};
+pub use ring::Known; // reading with the original
 pub use solid::{Choice, Chosen};
-pub use solid::{Frames, Place, Recorded, Seen, Way}; // reading with the original, which is SOLID's alone
+pub use solid::{Frames, Recorded, Seen}; // reading with the original, or with a record
 
 use crate::code::Codeword;
 use crate::geometry::{Leeway, Piece};

@@ -1,7 +1,8 @@
-//! What a key makes of a measurement.
+//! What a key makes of a measurement, and of a suspect that lies on its original.
 
-use crate::code::{Codeword, SoftSymbol};
+use crate::code::{Codeword, SoftSymbol, Symbol};
 use crate::detection::Statistic;
+use glam::DVec3;
 
 /// How a key reads a measurement.
 #[derive(Default)]
@@ -33,4 +34,31 @@ pub struct Hypothesis {
     pub ln_num_tests: f64,
     /// Which piece of the suspect is read: 0 is the whole, 1 the first of those that are read alone.
     pub piece: usize,
+}
+
+/// One address of an original, as a suspect that lies on it shows it: a window of SOLID's, a ring of RING's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// What it holds.
+    pub symbol: Symbol,
+    /// What the suspect shows of it, or how much it counts: knows nothing of its dither.
+    pub response: f64,
+    /// For a symbol of -1, and of +1: of a window by how much of a step the embedder had to move it, of a ring how near its feature is to the
+    /// symbol's lattice. -1/2 to 1/2, uniform to who has no key.
+    pub errors: [f64; 2],
+    /// Its centre, in the original's scene units.
+    pub centre: DVec3,
+}
+
+/// One way of reading a suspect that lies on its original.
+#[derive(Clone)]
+pub struct Way {
+    /// Places, each of an address of its own.
+    pub places: Vec<Place>,
+    /// What this way is charged: the shares of all that were declared add up to 1 at most.
+    pub ln_num_tests: f64,
+    /// Which of the ways in which the suspect may lie on the host it is of.
+    pub list: usize,
+    /// Of the places, in the original's scene units.
+    pub radius: f64,
 }

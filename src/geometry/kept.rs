@@ -19,8 +19,16 @@ const NOISE: f64 = 0.1;
 const CLIP: f64 = 4.0;
 const ROUNDS: usize = 5;
 
-/// Where the original's vertices went, of those that the suspect kept; `None` where it kept next to none.
-pub fn kept(original: &Original, suspect: &Mesh, motion: &Motion) -> Option<Vec<Observation>> {
+/// What a suspect kept of an original's V vertices.
+pub struct Kept {
+    /// Where they went, without what moved them all alike.
+    pub observations: Vec<Observation>,
+    /// V positions, in the original's scene units: where the suspect, laid on the original, has them; no numbers for what it has not.
+    pub positions: Vec<DVec3>,
+}
+
+/// What a suspect kept of an original's vertices; `None` where it kept next to none.
+pub fn kept(original: &Original, suspect: &Mesh, motion: &Motion) -> Option<Kept> {
     let reach = FARTHEST * original.diagonal;
     let near = Near::new(original.mesh.positions.iter().map(|p| p.to_array()));
     // For each vertex of the original the nearest of the suspect's.
@@ -33,10 +41,20 @@ pub fn kept(original: &Original, suspect: &Mesh, motion: &Motion) -> Option<Vec<
             nearest[name as usize] = (square, at);
         }
     }
+    let positions: Vec<DVec3> = nearest
+        .iter()
+        .map(|&(square, at)| {
+            if square < reach * reach {
+                at
+            } else {
+                DVec3::NAN
+            }
+        })
+        .collect();
     let pairs: Vec<(u32, DVec3, DVec3)> = (0..)
-        .zip(&nearest)
-        .filter(|(_, (square, _))| *square < reach * reach)
-        .map(|(name, (_, at))| (name, original.mesh.positions[name as usize], *at))
+        .zip(original.mesh.positions.iter().zip(&positions))
+        .filter(|(_, (_, at))| at.is_finite())
+        .map(|(name, (from, at))| (name, *from, *at))
         .collect();
     if pairs.len() < LEAST || (pairs.len() as f64) < LEAST_SHARE * suspect.positions.len() as f64 {
         return None;
@@ -55,7 +73,10 @@ pub fn kept(original: &Original, suspect: &Mesh, motion: &Motion) -> Option<Vec<
             precision,
         })
     };
-    Some(pairs.iter().zip(&left).flat_map(observe).collect())
+    Some(Kept {
+        observations: pairs.iter().zip(&left).flat_map(observe).collect(),
+        positions,
+    })
 }
 
 /// Movements of vertices without the affine map that explains most of them, in rounds that give what does not fit less weight.

@@ -45,7 +45,7 @@ pub use deformation::Deformation;
 pub use dihedral::{Dihedral, dihedrals};
 pub use distortion::{Distortion, diagonal};
 pub use fins::without_fins;
-pub use kept::kept;
+pub use kept::{Kept, kept};
 pub use leeway::{Bounds, Leeway};
 pub use linear::{conjugate_gradients, symmetric_eigen, unconditioned};
 pub use merge::merged;

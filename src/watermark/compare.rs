@@ -7,12 +7,11 @@ use super::report::{Comparison, Extraction, Input, Shape, Verdict, Witness};
 use super::weigh::{Scales, Spoken};
 use super::{EmbedOptions, Error, Model, Suspect};
 use crate::bits::Payload;
-use crate::carrier::{Carrier, Frames, Host, Reading, Seen, Way};
+use crate::carrier::{Carrier, Frames, Host, Known, Reading, Seen, Way};
 use crate::detection::{LN_P_FOUND, LN_P_TRACE};
 use crate::document::Document;
 use crate::geometry::{
-    Assembly, LEAST_NEAR, Leeway, Motion, Observation, Original, Registration, Search, Shown,
-    Views, kept,
+    Assembly, Kept, LEAST_NEAR, Leeway, Motion, Original, Registration, Search, Shown, Views, kept,
 };
 use crate::key::Key;
 use crate::mesh::Mesh;
@@ -265,7 +264,7 @@ pub(super) struct Lying<'a> {
     registration: Registration,
     num_parts: usize,
     shown: Shown<'a>,
-    kept: Option<Vec<Observation>>,
+    kept: Option<Kept>,
 }
 
 impl<'a> Lying<'a> {
@@ -315,6 +314,13 @@ impl<'a> Ears<'a> {
             }
             None => is_settled,
         }
+    }
+
+    /// The same of a way with rings. Whose copies the suspect was made of is asked of windows alone: a ring shows how near a symbol is, and not by how
+    /// much of a step.
+    pub(super) fn hear_rings(&mut self, mut way: Way) -> bool {
+        way.ln_num_tests += ln_num_searches();
+        self.scales.hear(&way) && self.loudest.is_none()
     }
 
     /// Whether all that was heard of the ways to lie on the original says enough of buyers.
@@ -473,6 +479,7 @@ fn hear(
     let original = Original::new(host.mesh);
     let views = Views::new(host.mesh);
     let frames = Frames::new(host);
+    let known_rings = Known::new(host);
     let mut reader = None;
     let mut ears = Ears::new(Scales::new(key).expecting(expected), loudest);
     let mut first: Option<Lay> = None;
@@ -484,15 +491,19 @@ fn hear(
         lyings.extend(new);
         let observe: Vec<_> = lyings[known..].iter().flat_map(views_of).collect();
         let seen: Vec<&Seen> = observe.iter().map(|observe| &**observe).collect();
+        let rings = Rings::new(known_rings.as_ref(), &lyings[known..], known, key);
         let mut is_settled = false;
         if !seen.is_empty() {
             let reader = reader.get_or_insert_with(|| frames.with_key(key));
             reader.read(&seen, progress, &mut |mut way| {
                 way.list += 2 * known;
-                is_settled = ears.hear(way);
+                way.ln_num_tests += Rings::LN_NUM_SHARES;
+                let beside = rings.beside(&way);
+                is_settled = ears.hear(way) || beside.is_some_and(|way| ears.hear_rings(way));
                 is_settled
             })?;
         }
+        is_settled = is_settled || rings.alone().any(|way| ears.hear_rings(way));
         if is_settled || ears.are_loud() {
             break;
         }
@@ -515,6 +526,50 @@ fn hear(
     })
 }
 
+/// What a key reads of the rings whose vertices a suspect kept, in each of some ways to lie on the original. They are two more ways to look at it: beside
+/// the windows as its vertices show them, and alone.
+pub(super) struct Rings {
+    ways: Vec<Option<Way>>,
+    /// The number of the first way to lie.
+    first: usize,
+}
+
+impl Rings {
+    /// Of all ways to look at a suspect, those without rings have a half of the probability.
+    pub(super) const LN_NUM_SHARES: f64 = LN_2;
+
+    pub(super) fn new(known: Option<&Known>, lyings: &[Lying], first: usize, key: &Key) -> Rings {
+        let read = |lying: &Lying| known?.read(&lying.kept.as_ref()?.positions, key);
+        Rings {
+            ways: lyings.iter().map(read).collect(),
+            first,
+        }
+    }
+
+    /// Alone, in a half of a half.
+    pub(super) fn alone(&self) -> impl Iterator<Item = Way> {
+        let charge = libm::log(self.ways.len() as f64) + 2.0 * LN_2;
+        let all = (self.first..).zip(&self.ways);
+        all.filter_map(move |(lying, rings)| {
+            let rings = rings.clone()?;
+            Some(Way {
+                ln_num_tests: charge,
+                list: 2 * lying + 1,
+                ..rings
+            })
+        })
+    }
+
+    /// Beside windows, charged as these; `None` where they are seen by the surface, or no ring was kept.
+    pub(super) fn beside(&self, windows: &Way) -> Option<Way> {
+        let rings = self.ways[windows.list / 2 - self.first].as_ref()?;
+        (windows.list % 2 == 1).then(|| Way {
+            places: [&windows.places[..], &rings.places].concat(),
+            ..*windows
+        })
+    }
+}
+
 /// What each search is charged: a half of the probability is for reading without the original; and each search, and the parts of a suspect that is taken
 /// apart, share the other half, whether they are made or not.
 pub(super) fn ln_num_searches() -> f64 {
@@ -533,7 +588,10 @@ fn nearer(first: Option<Lay>, new: &[Lying]) -> Option<Lay> {
 pub(super) fn views_of<'a>(lying: &'a Lying) -> [Box<Seen<'a>>; 2] {
     [
         Box::new(|radius| lying.shown.observations(radius)),
-        Box::new(|_| lying.kept.clone().unwrap_or_default()),
+        Box::new(|_| match &lying.kept {
+            Some(kept) => kept.observations.clone(),
+            None => Vec::new(),
+        }),
     ]
 }
 

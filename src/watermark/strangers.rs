@@ -4,9 +4,9 @@
 //! some lattices is read with what its points would hold under many keys. Each key is judged as in a comparison: in every way, payload and all.
 
 use super::Error;
-use super::compare::{Lyings, ln_num_searches, options_of_original, views_of, with_host};
+use super::compare::{Lyings, Rings, ln_num_searches, options_of_original, views_of, with_host};
 use super::weigh::Scales;
-use crate::carrier::{Frames, Seen};
+use crate::carrier::{Frames, Known, Seen, Way};
 use crate::document::Document;
 use crate::geometry::{Original, Views};
 use crate::key::Key;
@@ -30,6 +30,7 @@ pub fn strangers(
         let mut lyings: Vec<_> = Lyings::new(&original, &views, suspect).collect();
         lyings.retain(|lyings| !lyings.is_empty());
         let frames = Frames::new(host);
+        let known = Known::new(host);
         let mut ln_ps = Vec::new();
         for keys in lattices.iter().filter(|_| !lyings.is_empty()) {
             let Some(place) = keys.first() else {
@@ -40,10 +41,23 @@ pub fn strangers(
             for lyings in &lyings {
                 let observe: Vec<_> = lyings.iter().flat_map(views_of).collect();
                 let seen: Vec<&Seen> = observe.iter().map(|observe| &**observe).collect();
-                reader.read_as(&seen, keys, &mut ignore, &mut |number, mut way| {
+                let rings = keys.iter();
+                let rings: Vec<Rings> = rings
+                    .map(|key| Rings::new(known.as_ref(), lyings, 0, key))
+                    .collect();
+                let mut hear = |number: usize, mut way: Way| {
                     way.ln_num_tests += ln_num_searches();
                     scales[number].hear(&way);
+                };
+                reader.read_as(&seen, keys, &mut ignore, &mut |number, mut way| {
+                    way.ln_num_tests += Rings::LN_NUM_SHARES;
+                    let beside = rings[number].beside(&way);
+                    hear(number, way);
+                    beside.into_iter().for_each(|way| hear(number, way));
                 })?;
+                for (number, rings) in rings.iter().enumerate() {
+                    rings.alone().for_each(|way| hear(number, way));
+                }
             }
             let concluded = scales.into_iter().map(Scales::conclude);
             ln_ps.extend(concluded.map(|said| said.ln_p_presence.min(said.ln_p_payload)));

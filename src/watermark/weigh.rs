@@ -225,7 +225,10 @@ fn soft(place: &Place) -> SoftSymbol {
 
 /// The bound of errors against a codeword.
 fn against(places: &[Place], codeword: &Codeword) -> f64 {
-    ln_p_of_errors(places.iter().map(|p| (p.response, error(p, codeword))))
+    let terms = places.iter().map(|p| (p.response, error(p, codeword)));
+    // The bound goes over them many times.
+    let terms: Vec<(f64, f64)> = terms.collect();
+    ln_p_of_errors(terms.iter().copied())
 }
 
 /// By how much of a step the embedder had to move a window for a codeword.

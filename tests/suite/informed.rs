@@ -2,7 +2,7 @@
 
 use crate::support::fixtures::{asteroid, key, marked, payload};
 use glam::{DMat3, DVec3};
-use meshmark::internals::attack::{bend, crop, quantize, remesh, similarity, simplify};
+use meshmark::internals::attack::{bend, crop, delaunay, quantize, remesh, similarity, simplify};
 use meshmark::internals::carrier::{Frames, Host, Seen};
 use meshmark::internals::code::{Codeword, Symbol};
 use meshmark::internals::detection::{ln_p_of_errors, union};
@@ -11,8 +11,9 @@ use meshmark::internals::geometry::{Bounds, Leeway, Original, Parts, Search, Sho
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{
-    Comparison, Embedding, Payload, RecordOptions, Shape, Verdict, Witness, compare,
-    compare_overlaid, compare_with_record, record, verify_with_original, verify_with_record,
+    Carrier, Comparison, EmbedOptions, Embedding, Payload, RecordOptions, Shape, Verdict, Witness,
+    compare, compare_overlaid, compare_with_record, detect, embed, record, verify_with_original,
+    verify_with_record,
 };
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -100,6 +101,24 @@ fn informed_tells_an_unmarked_copy_from_another_shape() {
         "near {}",
         answer.near
     );
+}
+
+/// A tenth of a model, with its triangles: what windows and rings say there adds up, and no less is enough. And where a mark is in rings alone,
+/// other triangles between the same vertices.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_reads_rings_by_the_vertices_that_were_kept() {
+    let (original, _, mesh) = case();
+    let piece = to_glb(&similarity(&crop(&mesh, 0.88, 1), 8));
+    let answer = compare(&piece, &original, &key(1)).unwrap();
+    assert_found(&answer, "a small piece");
+    assert_eq!(answer.witness, Some(Witness::Vertices));
+
+    let options = EmbedOptions::default().with_carriers([Carrier::Ring]);
+    let marked = embed(&original, payload(), &key(1), &options).unwrap();
+    let others = to_glb(&delaunay(&mesh_of(&marked.model)));
+    let blind = detect(&others, &key(1), None).unwrap();
+    assert_eq!(blind.verdict, Verdict::None, "its rings are others");
+    assert_found(&compare(&others, &original, &key(1)).unwrap(), "flipped");
 }
 
 /// Two ends of a mesh, the first turned and moved away.

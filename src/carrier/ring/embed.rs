@@ -64,10 +64,10 @@ pub fn embed(
 
 /// A host, ready for any message under any key: what stays as it is while vertices move a little.
 pub struct Prepared {
-    neighbourhoods: Neighbourhoods,
+    pub(super) neighbourhoods: Neighbourhoods,
     by_connectivity: Vec<u64>,
     /// Which vertices are instances of one.
-    instances: Vec<u32>,
+    pub(super) instances: Vec<u32>,
     kind: AddressKind,
 }
 
@@ -130,6 +130,23 @@ impl Prepared {
         }
     }
 
+    /// The addresses of the V rings of a mesh that differs from the host in a little displacement.
+    pub(super) fn addresses(
+        &self,
+        mesh: &Mesh,
+        features: &Features,
+        host: Option<&Pose>,
+    ) -> Cow<'_, [u64]> {
+        match self.kind {
+            AddressKind::Connectivity => Cow::Borrowed(&self.by_connectivity),
+            AddressKind::Geometry => {
+                let positions = &mesh.positions;
+                address::by_geometry(positions, &self.neighbourhoods, features).into()
+            }
+            AddressKind::Position(turn) => by_position(mesh, host, turn).into(),
+        }
+    }
+
     fn displacement(
         &self,
         host: &Host,
@@ -138,7 +155,7 @@ impl Prepared {
         progress: &mut dyn Progress,
     ) -> Result<Vec<DVec3>, Cancelled> {
         let positions = &host.mesh.positions;
-        let (neighbourhoods, kind) = (&self.neighbourhoods, self.kind);
+        let neighbourhoods = &self.neighbourhoods;
         let features = Features::new(positions, neighbourhoods);
         let normals = vertex_normals(host.mesh);
         let pose = Pose::of(host.mesh);
@@ -151,25 +168,18 @@ impl Prepared {
         let mut displacement = vec![DVec3::ZERO; positions.len()];
         for round in 0..rounds {
             step(progress, Stage::Embed, round as f64 / rounds as f64)?;
-            let moved: Vec<DVec3> = positions
-                .iter()
-                .zip(&displacement)
-                .map(|(p, d)| *p + *d)
-                .collect();
-            let now = Features::new(&moved, neighbourhoods);
-            let addresses = match kind {
-                AddressKind::Connectivity => &self.by_connectivity,
-                AddressKind::Geometry => &address::by_geometry(&moved, neighbourhoods, &now),
-                AddressKind::Position(turn) => {
-                    &by_position(&host.mesh.with_positions(moved), pose.as_ref(), turn)
-                }
-            };
+            let moved = positions.iter().zip(&displacement);
+            let moved = host
+                .mesh
+                .with_positions(moved.map(|(p, d)| *p + *d).collect());
+            let now = Features::new(&moved.positions, neighbourhoods);
+            let addresses = self.addresses(&moved, &now, pose.as_ref());
             let along: Vec<f64> = displacement
                 .iter()
                 .zip(&normals)
                 .map(|(d, n)| d.dot(*n))
                 .collect();
-            let carriers = address::carriers(addresses, &now.usable, &self.instances);
+            let carriers = address::carriers(&addresses, &now.usable, &self.instances);
             let goals = carriers.into_iter().filter_map(|vertex| {
                 let vertex = vertex as usize;
                 let owned = ownership.get(addresses[vertex])?;

@@ -20,10 +20,12 @@
 mod address;
 mod embed;
 mod feature;
+mod known;
 mod measurement;
 mod trace;
 
 pub use embed::{Prepared, embed};
+pub use known::Known;
 pub use measurement::Measurement;
 pub use trace::{Ring, rings, trace};
 

@@ -14,7 +14,7 @@ use super::pitch::{AREAS, pitches, pitches_to_embed};
 use super::problem::Problem;
 use super::quantizer::{STEPS, phase};
 use super::window::{Window, windows};
-use crate::carrier::Host;
+use crate::carrier::{Host, Place, Way};
 use crate::code::Symbol;
 use crate::geometry::{Observation, Pieces, Pose, conjugate_gradients, diagonal, oriented};
 use crate::key::Key;
@@ -32,31 +32,6 @@ const RMS_REL: f64 = 0.0008;
 const ROUNDS: usize = 5;
 const CG_STEPS: usize = 120;
 const CG_TOLERANCE: f64 = 1e-3;
-
-/// One window as a suspect shows it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// What it holds.
-    pub symbol: Symbol,
-    /// What the suspect shows of its error: knows nothing of its dither.
-    pub response: f64,
-    /// By how much of a step the embedder had to move it for a symbol of -1, and of +1: -1/2 to 1/2.
-    pub errors: [f64; 2],
-    /// Its centre, in the original's scene units.
-    pub centre: DVec3,
-}
-
-/// One way of reading.
-pub struct Way {
-    /// Windows, each of an address of its own.
-    pub places: Vec<Place>,
-    /// What this way is charged: the shares of all that were declared add up to 1 at most.
-    pub ln_num_tests: f64,
-    /// Which of the ways in which the suspect may lie on the host it is of.
-    pub list: usize,
-    /// Of the windows, in the original's scene units.
-    pub radius: f64,
-}
 
 /// What is seen of a suspect that lies on the original in one way, by the radius of windows.
 pub type Seen<'a> = dyn Fn(f64) -> Vec<Observation> + 'a;

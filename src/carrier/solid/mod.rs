@@ -66,7 +66,7 @@ pub(super) mod window;
 
 pub use again::Prepared;
 pub use frame::has_axes;
-pub use informed::{Frames, Place, Seen, Way};
+pub use informed::{Frames, Seen};
 pub use measurement::{Measurement, Suspect, piece};
 pub use objects::{Chosen, embed};
 pub use recorded::Recorded;

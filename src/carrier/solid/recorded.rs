@@ -4,12 +4,12 @@
 //! by the affine map that leaves least, and what is left in windows that are whole is what the embedder moved them by, and noise.
 
 use super::cluster::{Cluster, clusters};
-use super::informed::{Frames, Place, Way, centre};
+use super::informed::{Frames, centre};
 use super::lattice::{Lattice, Placement, RADIUS, for_each_near};
 use super::pitch::PITCHES;
 use super::quantizer::{STEPS, phase};
 use super::window::{Window, sensitivity, windows};
-use crate::carrier::{StoredError, possible, take};
+use crate::carrier::{Place, StoredError, Way, possible, take};
 use crate::geometry::{Motion, Pose, affine_fit, oriented};
 use crate::key::Key;
 use crate::mesh::Mesh;

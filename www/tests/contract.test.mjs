@@ -4,12 +4,14 @@ import { before, test } from "node:test";
 import * as facade from "meshmark";
 import * as glue from "../meshmark/wasm/meshmark.js";
 import { readContract } from "./shape.mjs";
-import { caught, contractFile, fullContractFile, LOADING, OWNER, PASSPHRASE, TAG } from "./support.mjs";
+import { caught, contractFile, fullContractFile, LOADING, OWNER, PASSPHRASE, smallModel, TAG } from "./support.mjs";
 
 const contract = readContract(contractFile);
 const full = readContract(fullContractFile);
 
-before(() => facade.init());
+let small;
+
+before(async () => (small = await smallModel()));
 
 test("the module exports exactly the functions that the contract declares", () => {
   const exported = Object.keys(glue).filter((name) => !LOADING.includes(name));
@@ -27,7 +29,7 @@ test("the package exports the same functions, init and its error", () => {
 });
 
 test("real results have exactly the declared shapes", () => {
-  const model = facade.demoModel();
+  const model = small;
   const key = facade.deriveKey(OWNER, PASSPHRASE);
   const embedding = facade.embed(model, TAG, key);
   const evidence = facade.measure(embedding.model);
@@ -61,7 +63,7 @@ test("the full module exports what the first one does and what its own contract 
 
 test("copies and tracings have the declared shapes, and their calls the declared options", async () => {
   await facade.initFull();
-  const [model, key] = [facade.demoModel(), new Uint8Array(32).fill(1)];
+  const [model, key] = [small, new Uint8Array(32).fill(1)];
   const prepared = facade.prepare(model, key);
   assert.deepEqual(contract.differences("Prepared", prepared), []);
   const stamped = facade.stamp(prepared.plan, 1);
@@ -83,7 +85,7 @@ test("copies and tracings have the declared shapes, and their calls the declared
 });
 
 test("each call takes every option that is declared for it, and no other", () => {
-  const [model, key] = [facade.demoModel(), new Uint8Array(32).fill(1)];
+  const [model, key] = [small, new Uint8Array(32).fill(1)];
   const evidence = facade.measure(model);
   const calls = {
     EmbedOptions: (options) => facade.embed(model, TAG, key, options),
@@ -115,7 +117,7 @@ test("progress names declared stages, with fractions from 0 to 1", () => {
   const heard = [];
   const key = new Uint8Array(32).fill(1);
   const onProgress = (...report) => heard.push(report);
-  const { model } = facade.embed(facade.demoModel(), TAG, key, { onProgress });
+  const { model } = facade.embed(small, TAG, key, { onProgress });
   facade.measure(model, { onProgress });
   facade.detect(model, key, { onProgress });
   assert.ok(heard.length > 0);

@@ -3,15 +3,17 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import * as meshmark from "meshmark";
 import { launch, serve, SLOW } from "./browser.mjs";
+import { smallModel } from "./support.mjs";
 
 const packageFolder = new URL("../meshmark/", import.meta.url);
 const KEY = new Uint8Array(32).fill(9);
+let small;
 let server;
 let browser;
 
 before(async () => {
-  await meshmark.init();
-  assert.throws(() => meshmark.prepare(meshmark.demoModel(), KEY), { code: "init.missing" });
+  small = await smallModel();
+  assert.throws(() => meshmark.prepare(small, KEY), { code: "init.missing" });
   await meshmark.initFull();
   server = await serve(packageFolder, { configFile: false, appType: "mpa", build: { outDir: "." } });
   browser = await launch();
@@ -23,7 +25,7 @@ after(async () => {
 });
 
 test("copies are stamped from a plan, read and traced", { timeout: SLOW }, () => {
-  const model = meshmark.demoModel();
+  const model = small;
   const { plan, report } = meshmark.prepare(model, KEY, { strength: "balanced" });
   assert.equal(report.isFragile, false);
   const copy = meshmark.stamp(plan, 7);
@@ -57,7 +59,7 @@ test("copies are stamped from a plan, read and traced", { timeout: SLOW }, () =>
 });
 
 test("a copy is traced with the original or a record, and laid on it", { timeout: SLOW }, () => {
-  const original = meshmark.demoModel();
+  const original = small;
   const { plan, report } = meshmark.prepare(original, KEY);
   const record = meshmark.record(original, report, KEY);
   const { model } = meshmark.stamp(plan, 7);
@@ -77,7 +79,7 @@ test("a copy is traced with the original or a record, and laid on it", { timeout
 });
 
 test("what is no plan or no number is refused by name", () => {
-  const { plan } = meshmark.prepare(meshmark.demoModel(), KEY);
+  const { plan } = meshmark.prepare(small, KEY);
   for (const number of [-1, 0.5, 2 ** 48, NaN]) {
     assert.throws(() => meshmark.stamp(plan, number), { code: "payload.range" });
   }
@@ -92,11 +94,11 @@ test("the client makes copies with several workers, in their order", { timeout: 
   page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
   await page.route(`${server.origin}/`, (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>copies</title>" }));
   await page.goto(server.origin);
-  const { before, numbers, end } = await page.evaluate(async () => {
+  const { before, numbers, end } = await page.evaluate(async (bytes) => {
     const { createClient } = await import("/dist/client.js");
     const key = new Uint8Array(32).fill(9);
     const client = await createClient();
-    const model = await client.demoModel();
+    const model = Uint8Array.from(bytes);
     const before = performance.getEntriesByType("resource").some(({ name }) => name.includes("copies"));
     const numbers = [];
     for await (const { model: copy, report } of client.copies(model, [5, 3, 4], key, { workers: 2 })) {
@@ -106,7 +108,7 @@ test("the client makes copies with several workers, in their order", { timeout: 
     const end = await client.copies(model, [1, -1], key).next().then(({ value }) => value.report.number);
     client.dispose();
     return { before, numbers, end };
-  });
+  }, [...small]);
   assert.equal(before, false, "the module comes when it is asked for");
   assert.deepEqual(numbers, [[5, [5]], [3, [3]], [4, [4]]]);
   assert.equal(end, 1);

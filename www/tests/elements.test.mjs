@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { after, before, beforeEach, test } from "node:test";
 import * as meshmark from "meshmark";
 import { launch } from "./browser.mjs";
+import { smallModel } from "./support.mjs";
 
 const packageFolder = new URL("../meshmark/", import.meta.url);
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; frame-src 'self'; form-action 'self'";
@@ -22,6 +23,7 @@ await import("/dist/elements.js");
 globalThis.heard = [];
 for (const name of ["meshmark-protected", "meshmark-verdict", "meshmark-error"]) document.addEventListener(name, (event) => heard.push([name, event.detail]));`;
 
+let small;
 let server;
 let origin;
 let browser;
@@ -30,7 +32,7 @@ let uploaded;
 const offences = [];
 
 before(async () => {
-  await meshmark.init();
+  small = await smallModel();
   server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, "http://localhost");
     const send = (type, body) => response.writeHead(200, { "Content-Type": type, "Content-Security-Policy": POLICY }).end(body);
@@ -79,7 +81,7 @@ test("a model is marked before the form sends it", { timeout: 240_000 }, async (
   assert.equal(new URL(page.url()).pathname, "/", "nothing is sent before there is a model");
   const protect = page.locator("meshmark-protect");
   assert.equal(await protect.evaluate((element) => element.validity.valueMissing), true);
-  await page.getByLabel("Model to protect").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await page.getByLabel("Model to protect").setInputFiles(file("rock.glb", small));
   assert.equal(await protect.evaluate((element) => element.checkValidity()), false, "not while it works");
   assert.equal(await protect.getByRole("status").textContent(), "One moment…");
   await protect.getByRole("progressbar").waitFor();
@@ -88,7 +90,7 @@ test("a model is marked before the form sends it", { timeout: 240_000 }, async (
   assert.equal(await protect.getByRole("progressbar").count(), 0);
   const [, detail] = await page.evaluate(() => heard.find(([name]) => name === "meshmark-protected"));
   assert.equal(detail.report.tag, "ADA-1");
-  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.embed(meshmark.demoModel(), "ADA-2", KEY).model));
+  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.embed(small, "ADA-2", KEY).model));
   await heard(page, "meshmark-verdict");
   assert.match(await page.locator("meshmark-check").getByRole("status").textContent(), /^Your mark was found\./);
   await page.getByRole("button", { name: "Send" }).click();
@@ -114,7 +116,7 @@ test("what cannot be marked is said, and not sent", { timeout: 120_000 }, async 
   await protect.evaluate((element) => element.form.reset());
   assert.equal(await protect.getByRole("status").textContent(), "");
   await protect.evaluate((element) => (element.ownerKey = undefined));
-  await field.setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await field.setInputFiles(file("rock.glb", small));
   await page.waitForFunction(() => heard.filter(([name]) => name === "meshmark-error").length === 2);
   assert.match(await protect.getByRole("status").textContent(), /No key was given/);
   await protect.evaluate((element) => ((element.ownerKey = new Uint8Array(32).fill(9)), void element.again()));
@@ -145,7 +147,7 @@ test("the keyboard reaches them, and stops at what is missing", { timeout: 60_00
 test("what was not found is not shown as good news", { timeout: 120_000 }, async () => {
   await page.goto(origin);
   await page.waitForFunction(() => globalThis.heard);
-  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await page.getByLabel("Model to check").setInputFiles(file("rock.glb", small));
   await heard(page, "meshmark-verdict");
   const status = page.locator("meshmark-check").getByRole("status");
   assert.match(await status.textContent(), /^No evidence of this key\./);
@@ -157,7 +159,7 @@ test("they work in a frame", { timeout: 240_000 }, async () => {
   await page.goto(`${origin}/framed`);
   const frame = page.frames()[1];
   await frame.waitForFunction(() => globalThis.heard);
-  await frame.getByLabel("Model to protect").setInputFiles(file("rock.glb", meshmark.demoModel()));
+  await frame.getByLabel("Model to protect").setInputFiles(file("rock.glb", small));
   await heard(frame, "meshmark-protected");
   assert.deepEqual(offences, []);
 });

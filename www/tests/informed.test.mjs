@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import * as meshmark from "meshmark";
 import { readContract } from "./shape.mjs";
-import { contractFile } from "./support.mjs";
+import { contractFile, smallModel } from "./support.mjs";
 
 const contract = readContract(contractFile);
 const key = new Uint8Array(32).fill(5);
@@ -11,8 +11,7 @@ let original;
 let embedding;
 
 before(async () => {
-  await meshmark.init();
-  original = meshmark.demoModel();
+  original = await smallModel();
   embedding = meshmark.embed(original, "TEST-42", key);
 });
 

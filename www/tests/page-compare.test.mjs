@@ -12,9 +12,8 @@ let piece;
 let record;
 
 before(async () => {
-  await smallModel(); // loads the attacks
+  original = await smallModel(); // it loads the attacks too
   await meshmark.initFull();
-  original = meshmark.demoModel();
   const key = meshmark.deriveKey(OWNER, PASSPHRASE);
   const { model, report } = meshmark.embed(original, TAG, key, { strength: "strong" });
   record = meshmark.record(original, report, key, { owner: OWNER, date: "2026-11-29" });

@@ -78,7 +78,7 @@ for (const [name, source, skip] of [
 }
 
 unseen("a work has a key of its own, and is found with its title alone", async () => {
-  await dropped(onDisk("rock.glb", await meshmark.demoModel()));
+  await dropped(onDisk("rock.glb", small));
   await page.getByLabel(/Title of the work/).fill("Rock");
   await mark();
   assert.equal(await headline(), "Your mark is in the copy");

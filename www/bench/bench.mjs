@@ -6,6 +6,7 @@ import { basename } from "node:path";
 import { setTimeout } from "node:timers/promises";
 import { parseArgs } from "node:util";
 import * as meshmark from "meshmark";
+import * as attacks from "../app/research-wasm/research.js";
 import { glbFromObj, sharedModel } from "../tests/support.mjs";
 import { startChromium } from "./chromium.mjs";
 import { embedLarge } from "./large.mjs";
@@ -37,17 +38,20 @@ await meshmark.init();
 const host = hostModel();
 const key = meshmark.deriveKey(OWNER, PASSPHRASE);
 const { model: marked, report } = meshmark.embed(host.bytes, TAG, key);
+await attacks.default({ module_or_path: readFileSync(new URL("../app/research-wasm/research_bg.wasm", import.meta.url)) });
+const piece = attacks.attack(marked, ["crop 50 %", "simplify 50 %", "similarity"]);
 const work = {
   key: { owner: OWNER, passphrase: PASSPHRASE },
   embed: { model: host.bytes, tag: TAG, key },
   extract: { model: marked, key },
+  compare: { suspect: piece, original: host.bytes, key },
   rank: { mesh: torus(200, 250), rankings: ["literal", "integrated", "collapse"] },
 };
 
 const large = await embedLarge(options.cli, LARGE_RUNS);
 const native = prepareNative(options.cli, work);
 const chromium = await startChromium(work);
-const samples = { key: [], embed: [], extract: [] };
+const samples = { key: [], embed: [], extract: [], compare: [] };
 const rankings = [];
 try {
   for (let run = 1; run <= Number(options.runs); run++) {
@@ -97,8 +101,8 @@ async function rank() {
 
 /** Times of work that was not done, or done otherwise, say nothing. */
 function assertDone(command, { sha256, tag, ms }) {
-  const stages = { key: ["key"], embed: ["read", "embed", "write", "measure", "test", "forecast"], extract: ["read", "measure", "test"] };
+  const stages = { key: ["key"], embed: ["read", "embed", "write", "measure", "test", "forecast"], extract: ["read", "measure", "test"], compare: ["read", "measure", "test"] };
   assert.deepEqual(Object.keys(ms).sort(), stages[command].sort());
   assert.equal(sha256, command === "embed" ? report.markedSha256 : undefined);
-  assert.equal(tag, command === "extract" ? TAG : undefined);
+  assert.equal(tag, ["extract", "compare"].includes(command) ? TAG : undefined);
 }

@@ -21,6 +21,7 @@ export function prepareNative(cli, work) {
   };
   const host = file("host.glb", work.embed.model);
   const marked = file("marked.glb", work.extract.model);
+  const piece = file("piece.glb", work.compare.suspect);
   const triangle = file("triangle.glb", glbFromObj(TRIANGLE));
   const byKey = ["--key-file", file("key", work.embed.key)];
   const byPassphrase = ["--owner", work.key.owner, "--passphrase-file", file("passphrase", work.key.passphrase)];
@@ -37,6 +38,10 @@ export function prepareNative(cli, work) {
     },
     extract() {
       const { report } = call(cli, ["extract", marked, ...byKey], DONE);
+      return { ms: report.ms, tag: report.tag };
+    },
+    compare() {
+      const { report } = call(cli, ["extract", piece, "--original", host, ...byKey], DONE);
       return { ms: report.ms, tag: report.tag };
     },
   };

@@ -7,6 +7,7 @@ const COMMANDS = {
   key: { title: "key derivation", stages: [null] },
   embed: { title: "embed", stages: ["read", "embed", "write", "measure", "test", "forecast", null] },
   extract: { title: "extract", stages: ["read", "measure", "test", null] },
+  compare: { title: "half of it, simplified to half, with the original", stages: ["read", "measure", "test", null] },
 };
 
 /**

@@ -2,6 +2,7 @@
 // no message's way to the page is in them.
 import * as meshmark from "../meshmark/dist/index.js";
 import load from "../meshmark/wasm/meshmark.js";
+import loadFull from "../meshmark/wasm-full/full.js";
 import loadStudy, * as study from "../app/research-wasm/research.js";
 
 const commands = {
@@ -16,6 +17,10 @@ const commands = {
   },
   extract({ model, key }, clock) {
     return { tag: meshmark.detect(model, key, { onProgress: clock.start }).tag };
+  },
+  async compare({ suspect, original, key }, clock) {
+    await meshmark.initFull();
+    return { tag: meshmark.compare(suspect, original, key, { overlay: true, onProgress: clock.start }).tag };
   },
   async rank({ mesh, rankings }, clock) {
     await loadStudy();
@@ -33,7 +38,7 @@ self.addEventListener("message", async ({ data: { command, ...request } }) => {
     const clock = new Clock();
     const done = await commands[command](request, clock);
     clock.stop();
-    const { memory } = await load(); // loads nothing any more: gives the module's exports
+    const { memory } = await (command === "compare" ? loadFull : load)(); // loads nothing any more: gives the module's exports
     self.postMessage({ result: { ...done, ms: clock.ms, memoryBytes: memory.buffer.byteLength } });
   } catch (error) {
     self.postMessage({ error });

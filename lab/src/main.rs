@@ -30,6 +30,7 @@ mod seed;
 mod study;
 mod surface;
 mod trace;
+mod traces;
 mod vectors;
 mod wild;
 
@@ -90,6 +91,10 @@ struct Arguments {
     /// Instead of the grid: what people who have no key learn from marked plain models, and do to them; prints tables.
     #[arg(long, group = "instead", conflicts_with_all = GRID)]
     adversary: bool,
+    /// Instead of the grid: whether a program that learned from marked models and their hosts, so many for each kind of surface, tells one from the
+    /// other; prints a table.
+    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
+    traces: Option<u64>,
     /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table. Of plain models, or
     /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.
     #[arg(long, value_name = "STRENGTH", groups = ["instead", "keyed"], conflicts_with_all = ["full"])]
@@ -203,6 +208,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if arguments.adversary {
         let (models, _) = models::all(arguments.models.as_deref())?;
         return adversary::table(models, &Seed::new(seed));
+    }
+    if let Some(num_hosts) = arguments.traces {
+        return traces::table(num_hosts, &Seed::new(seed));
     }
     if let Some(name) = &arguments.informed {
         let strength = named_strength(name)?;

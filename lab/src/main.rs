@@ -92,8 +92,8 @@ struct Arguments {
     #[arg(long, group = "instead", conflicts_with_all = GRID)]
     adversary: bool,
     /// Instead of the grid: whether a program that learned from marked models and their hosts, so many for each kind of surface, tells one from the
-    /// other; prints a table.
-    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID)]
+    /// other; at least 8; prints a table.
+    #[arg(long, value_name = "N", group = "instead", conflicts_with_all = GRID, value_parser = clap::value_parser!(u64).range(8..))]
     traces: Option<u64>,
     /// Instead of the grid: what the original and the record add to a reading, at a strength (balanced or strong); prints a table. Of plain models, or
     /// of all .glb and .obj of --models that have 200 vertices and more. With --real, also in programs that people have.

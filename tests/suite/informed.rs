@@ -82,6 +82,24 @@ fn informed_finds_mirrored_and_stretched_copies() {
     }
 }
 
+/// A part whose areas, and so the axes of its moments, a stretch changes most.
+#[wasm_bindgen_test(unsupported = test)]
+fn informed_lays_a_stretched_part_on_its_original() {
+    let part = shapes::cad_part();
+    let original = Original::new(&part);
+    for stretch in [
+        DVec3::new(1.5, 1.0, 0.7),
+        DVec3::new(0.7, 1.0, 1.5),
+        DVec3::new(0.5, 1.0, 1.0),
+        DVec3::new(1.0, 3.0, 1.0),
+    ] {
+        let stretched = part.positions.iter().map(|p| *p * stretch).collect();
+        let suspect = similarity(&simplify(&part.with_positions(stretched), 0.5), 7);
+        let best = original.registrations(&suspect, Search::Quick)[0];
+        assert!(best.near > 0.95 && best.exact > 0.9, "{stretch}: {best:?}");
+    }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn informed_tells_an_unmarked_copy_from_another_shape() {
     let (original, ..) = case();

@@ -1,5 +1,6 @@
 //! What each attack promises.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, cuboid};
 use glam::DVec3;
 use meshmark::internals::attack::{
@@ -9,7 +10,6 @@ use meshmark::internals::attack::{
 };
 use meshmark::internals::geometry::{Distortion, Surface, diagonal};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn volume(mesh: &Mesh) -> f64 {
     let volumes = mesh.triangles.iter().map(|&t| {
@@ -94,7 +94,7 @@ fn mean_radius(mesh: &Mesh) -> f64 {
     mesh.positions.iter().map(|p| p.distance(mean)).sum::<f64>() / count
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_noise_keeps_to_its_amplitude() {
     let mesh = asteroid();
     for amplitude in [0.0005, 0.001, 0.003, 0.005] {
@@ -114,7 +114,7 @@ fn attack_noise_keeps_to_its_amplitude() {
     assert_eq!(border(&noise(&terrain, 0.01, 1)), border(&terrain));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_quantize_leaves_so_many_values() {
     let mesh = asteroid();
     for bits in [7, 9] {
@@ -142,7 +142,7 @@ fn attack_quantize_leaves_so_many_values() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_similarity_keeps_the_shape() {
     let mesh = asteroid();
     for seed in 0..20 {
@@ -161,7 +161,7 @@ fn attack_similarity_keeps_the_shape() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_crop_removes_its_fraction() {
     for mesh in [asteroid(), shapes::terrain(30)] {
         for fraction in [0.1, 0.3, 0.5] {
@@ -177,7 +177,7 @@ fn attack_crop_removes_its_fraction() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_reorder_keeps_every_triangle() {
     let mesh = asteroid();
     let reordered = reorder(&mesh, 1);
@@ -200,7 +200,7 @@ fn attack_reorder_keeps_every_triangle() {
     assert_eq!(triangles(&reordered), triangles(&mesh));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_smooth_keeps_boundaries_and_shrinks() {
     let terrain = shapes::terrain(20);
     assert_eq!(border(&smooth_inside(&terrain, 0.1, 30)), border(&terrain));
@@ -215,7 +215,7 @@ fn attack_smooth_keeps_boundaries_and_shrinks() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_subdivisions_have_their_counts() {
     for mesh in [asteroid(), shapes::terrain(20)] {
         let [v, e, f, b] = counts(&mesh);
@@ -243,14 +243,14 @@ fn attack_subdivisions_have_their_counts() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_midpoint_keeps_the_surface() {
     let mesh = asteroid();
     assert!((volume(&midpoint(&mesh)) / volume(&mesh) - 1.0).abs() < 1e-12);
 }
 
 /// The benchmark counts edges, on open surfaces too.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplifications_remove_so_many_edges() {
     for mesh in [asteroid(), shapes::terrain(30)] {
         let [_, before, _, _] = counts(&mesh);
@@ -265,7 +265,7 @@ fn attack_simplifications_remove_so_many_edges() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_volume_preserves_it() {
     let change = |mesh: &Mesh, simple: &Mesh| (volume(simple) / volume(mesh) - 1.0).abs();
     for (name, mesh) in [
@@ -288,7 +288,7 @@ fn attack_simplify_volume_preserves_it() {
 }
 
 /// A collapse takes nothing away within a straight border, and cuts corners last.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_volume_keeps_borders_and_planes() {
     let mut plane = shapes::terrain(20);
     plane.positions.iter_mut().for_each(|p| p.z = 0.0);
@@ -300,7 +300,7 @@ fn attack_simplify_volume_keeps_borders_and_planes() {
 }
 
 /// On a flat, regular plane the smooth schemes reproduce the plane, and its square stays one.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_subdivisions_keep_planes() {
     let mut plane = shapes::terrain(12);
     plane.positions.iter_mut().for_each(|p| p.z = 0.0);
@@ -316,7 +316,7 @@ fn attack_subdivisions_keep_planes() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_removes_its_fraction() {
     let mesh = asteroid();
     for (fraction, farthest) in [(0.3, 0.001), (0.5, 0.002), (0.9, 0.01), (0.975, 0.04)] {
@@ -333,7 +333,7 @@ fn attack_simplify_removes_its_fraction() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_keeps_borders_and_planes() {
     let mut plane = shapes::terrain(20);
     plane.positions.iter_mut().for_each(|p| p.z = 0.0);
@@ -347,7 +347,7 @@ fn attack_simplify_keeps_borders_and_planes() {
 }
 
 /// Nothing is left to collapse long before nothing is left.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_keeps_the_topology() {
     let knot = simplify(&shapes::torus_knot(60, 20), 1.0);
     assert_sound("knot", &knot);
@@ -360,7 +360,7 @@ fn attack_simplify_keeps_the_topology() {
     assert!(f >= 14, "no torus has fewer faces than 14, this one {f}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_simplify_accepts_non_manifold_edges() {
     let mut mesh = shapes::terrain(10);
     let first = mesh.positions.len() as u32;
@@ -371,7 +371,7 @@ fn attack_simplify_accepts_non_manifold_edges() {
     assert_eq!(Edges::new(&simple).num_non_manifold(), 1);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_remesh_evens_edges_on_the_same_surface() {
     for (name, mesh, length) in [
         ("asteroid", asteroid(), 0.02),
@@ -407,7 +407,7 @@ fn attack_remesh_evens_edges_on_the_same_surface() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_remesh_keeps_creases() {
     let cube = cuboid(DVec3::ONE);
     let new = remesh(&cube, 0.03);
@@ -415,7 +415,7 @@ fn attack_remesh_keeps_creases() {
     assert!((volume(&new) - 1.0).abs() < 1e-9, "{}", volume(&new));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_resample_finds_the_surface_again() {
     for (name, mesh, cell) in [
         ("asteroid", asteroid(), 0.015),
@@ -434,7 +434,7 @@ fn attack_resample_finds_the_surface_again() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_resample_ends_an_open_surface_where_it_ended() {
     let terrain = shapes::terrain(30);
     let new = resample(&terrain, 0.015);
@@ -444,7 +444,7 @@ fn attack_resample_ends_an_open_surface_where_it_ended() {
     assert!(hausdorff(&terrain, &new) < 0.015);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_warp_has_its_rms_and_is_smooth() {
     let mesh = asteroid();
     let warped = warp(&mesh, 0.1, 0.0008, 3);
@@ -459,7 +459,7 @@ fn attack_warp_has_its_rms_and_is_smooth() {
     assert!(difference < size, "neighbours move alike");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_average_is_the_mean() {
     let mesh = asteroid();
     let moved = mesh.with_positions(mesh.positions.iter().map(|p| *p + DVec3::X).collect());
@@ -474,7 +474,7 @@ fn attack_average_is_the_mean() {
     assert_eq!(mean.triangles, mesh.triangles);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_nothing_comes_of_nothing() {
     let nothing = Mesh::default();
     for result in [
@@ -497,7 +497,7 @@ fn attack_nothing_comes_of_nothing() {
 }
 
 /// Names are what the command line, the page and the tables' random numbers go by.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn every_step_is_found_by_its_name() {
     for attack in CATALOGUE {
         for found in attack.steps() {

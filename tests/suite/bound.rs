@@ -106,12 +106,12 @@ fn ring(connectivity: u64, geometry: u64, cell: [i16; 3], offset: f32) -> Vec<u8
     .concat()
 }
 
-/// Ten to the fifth keys against rings.
-fn hold_rings(name: &str, rings: impl Iterator<Item = Vec<u8>>) {
-    let bytes: Vec<u8> = rings.flatten().collect();
+/// Keys against rings.
+fn hold_rings(name: &str, rings: &Rings, keys: u64) {
+    let bytes = rings.concat();
     let measurement = ring::Measurement::from_bytes(&bytes).unwrap();
     let mut tails = Tails::default();
-    for number in 0..100_000 {
+    for number in 0..keys {
         let key = random_key(number);
         let reading = measurement.read(&key);
         for hypothesis in &reading.hypotheses {
@@ -123,10 +123,11 @@ fn hold_rings(name: &str, rings: impl Iterator<Item = Vec<u8>>) {
     tails.hold(name);
 }
 
+type Rings = Vec<Vec<u8>>;
+
 /// Cells whose addresses are equal: the hash of the first two numbers differs by 229 between the two columns, and the third number
 /// is added to it.
-#[test]
-fn bound_holds_where_two_cells_have_one_address() {
+fn colliding_cells() -> Rings {
     let pairs = (0..100i16).flat_map(|z| {
         let offset = 0.04 * f32::from(z) / 37.0;
         let own = u64::from(z.unsigned_abs());
@@ -135,12 +136,11 @@ fn bound_holds_where_two_cells_have_one_address() {
             ring(own, own, [-3170, -4529, z], offset),
         ]
     });
-    hold_rings("colliding cells", pairs);
+    pairs.collect()
 }
 
 /// Each cell also as it is seen in the other turns of the frame, as a mirrored model has it.
-#[test]
-fn bound_holds_for_mirrored_halves() {
+fn mirrored_halves() -> Rings {
     let mirrored = (0..30i16).flat_map(|i| {
         let (cell, offset) = ([i % 5, i / 5 % 5, i / 25], 0.003 * f32::from(i));
         (0..8).map(move |side| {
@@ -152,24 +152,22 @@ fn bound_holds_for_mirrored_halves() {
             ring(own, own, [seen(0), seen(1), seen(2)], offset)
         })
     });
-    hold_rings("mirrored halves", mirrored);
+    mirrored.collect()
 }
 
 /// Each neighbourhood many times, in one cell and in several.
-#[test]
-fn bound_holds_for_repeated_parts() {
+fn repeated_parts() -> Rings {
     let repeated = (0..60i16).flat_map(|i| {
         (0..12i16).map(move |copy| {
             let own = i.unsigned_abs().into();
             ring(own, own / 3, [i, copy % 3, 0], 0.001 * f32::from(copy % 7))
         })
     });
-    hold_rings("repeated parts", repeated);
+    repeated.collect()
 }
 
 /// Rings that cancel each other, but for some that do hardly; and offsets of every size.
-#[test]
-fn bound_holds_for_extreme_offsets() {
+fn extreme_offsets() -> Rings {
     let extreme = (0..80i16).flat_map(|i| {
         let (own, cell) = (u64::from(i.unsigned_abs()), [i % 20, i / 20, 32_000]);
         let rest = if i % 8 == 0 { 1e-4 } else { 0.0 };
@@ -180,7 +178,19 @@ fn bound_holds_for_extreme_offsets() {
             ring(own + 1000, own, [i, 1, -32_000], large),
         ]
     });
-    hold_rings("extreme offsets", extreme);
+    extreme.collect()
+}
+
+#[test]
+fn bound_holds_for_crafted_rings() {
+    hold_crafted_rings(RING_KEYS);
+}
+
+fn hold_crafted_rings(keys: u64) {
+    hold_rings("colliding cells", &colliding_cells(), keys);
+    hold_rings("mirrored halves", &mirrored_halves(), keys);
+    hold_rings("repeated parts", &repeated_parts(), keys);
+    hold_rings("extreme offsets", &extreme_offsets(), keys);
 }
 
 /// A rectangle of n x n squares on one side of a box, that faces along the axis.
@@ -275,6 +285,9 @@ fn hold_pieces(name: &str, mesh: &Mesh, keys: u64) {
 /// that take a scan for each key.
 const KEYS: u64 = 200;
 const ALL_KEYS: u64 = 1_000;
+/// The same of rings, which take little time each.
+const RING_KEYS: u64 = 20_000;
+const ALL_RING_KEYS: u64 = 100_000;
 
 fn a_box() -> Mesh {
     box_shape(16, DVec3::new(1.0, 0.8, 0.6))
@@ -345,6 +358,7 @@ fn bound_holds_where_something_is_undone() {
 #[test]
 #[ignore = "takes minutes: cargo xtask test --all"]
 fn bound_holds_for_all_keys() {
+    hold_crafted_rings(ALL_RING_KEYS);
     hold_mesh("a box", &a_box(), ALL_KEYS);
     hold_mesh("identical boxes", &identical_boxes(), ALL_KEYS);
     hold_mesh("mirrored pair", &mirrored_pair(), ALL_KEYS);

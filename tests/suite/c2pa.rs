@@ -1,9 +1,9 @@
 //! docs/c2pa.json: what the schema of C2PA's list of soft bindings asks of an entry, as far as an entry can be held to it before it has a number.
 
+use crate::portable_test;
 use serde_json::Value;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn c2pa_entry_has_what_the_list_asks_for() {
     let entry: Value = serde_json::from_str(include_str!("../../docs/c2pa.json")).unwrap();
     assert!(

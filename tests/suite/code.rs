@@ -1,11 +1,11 @@
 //! The convolutional code, its decoder and the check bits.
 
+use crate::portable_test;
 use crate::support::fixtures::key;
 use meshmark::Payload;
 use meshmark::internals::code::{
     CHECK_BITS, Checked, Codeword, MESSAGE_BITS, SoftSymbol, Symbol, complete, decode,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0a5_c3f0_1234_5678;
 
@@ -31,7 +31,7 @@ fn received(message: u64, count: u64, noise: f64) -> Vec<SoftSymbol> {
         .collect()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_symbol_is_the_parity_of_the_tapped_bits() {
     let codeword = Codeword::new(MESSAGE);
     for random in 0..20_000 {
@@ -51,7 +51,7 @@ fn code_symbol_is_the_parity_of_the_tapped_bits() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_a_third_of_the_symbols_are_pilots() {
     let random = key(2).prf("test");
     let pilots = (0..9000)
@@ -60,7 +60,7 @@ fn code_a_third_of_the_symbols_are_pilots() {
     assert!((2800..3200).contains(&pilots), "{pilots}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_decodes_what_it_encoded() {
     for message in [
         0,
@@ -73,12 +73,12 @@ fn code_decodes_what_it_encoded() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_decodes_through_noise_of_three_times_the_signal() {
     assert_eq!(decode(&received(MESSAGE, 900, 3.0), 1), [MESSAGE]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_lists_distinct_messages_in_order_of_likelihood() {
     let symbols = received(MESSAGE, 400, 4.0);
     let list = decode(&symbols, 16);
@@ -104,7 +104,7 @@ fn code_lists_distinct_messages_in_order_of_likelihood() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_completes_what_is_known_of_a_message() {
     let symbols = received(MESSAGE, 900, 1.0);
     for num_known in [0, 1, 48, MESSAGE_BITS] {
@@ -116,12 +116,12 @@ fn code_completes_what_is_known_of_a_message() {
     assert_eq!(complete(&symbols, other, 48) >> (MESSAGE_BITS - 48), other);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_decodes_nothing_at_all_without_failing() {
     assert_eq!(decode(&[], 4).len(), 4);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn code_check_bits_hold_for_their_key_and_payload_only() {
     let (mine, other) = (Checked::new(&key(1)), Checked::new(&key(2)));
     let payload = Payload::from_tag("CHECK").unwrap();

@@ -1,10 +1,10 @@
 //! Copies: what one plan gives for many numbers.
 
+use crate::portable_test;
 use crate::support::fixtures::key;
 use meshmark::{
     EmbedOptions, Error, Key, Model, Payload, Plan, Strength, Verdict, demo_model, detect, prepare,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn plan() -> Plan {
     let (plan, report) = prepare(&demo_model(), &key(71), &EmbedOptions::default()).unwrap();
@@ -12,7 +12,7 @@ fn plan() -> Plan {
     plan
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn copies_are_read_back_by_anybody_with_the_key_and_have_their_numbers() {
     let (plan, key) = (plan(), key(71));
     for number in [1, 2, 999_999, (1 << 48) - 1] {
@@ -30,7 +30,7 @@ fn copies_are_read_back_by_anybody_with_the_key_and_have_their_numbers() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_plan_comes_back_from_its_bytes_and_makes_the_same_copies() {
     let plan = plan();
     let bytes = plan.to_bytes();
@@ -44,7 +44,7 @@ fn a_plan_comes_back_from_its_bytes_and_makes_the_same_copies() {
     assert_ne!(plan.stamp(3).unwrap().model, plan.stamp(4).unwrap().model);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bytes_that_are_no_plan_are_refused() {
     let bytes = plan().to_bytes();
     let code = |bytes: &[u8]| Plan::from_bytes(bytes).map(|_| ()).unwrap_err().code();
@@ -66,7 +66,7 @@ fn bytes_that_are_no_plan_are_refused() {
     assert_eq!(code(&forged), "plan.damaged");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn numbers_and_payloads_are_one_to_one_and_follow_the_key() {
     let keys: [Key; 2] = [key(1), key(2)];
     let mut seen = std::collections::BTreeSet::new();
@@ -94,7 +94,7 @@ fn numbers_and_payloads_are_one_to_one_and_follow_the_key() {
     assert!((23_000..25_000).contains(&bits), "{bits}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_model_that_holds_no_number_has_no_copies() {
     let small =
         meshmark::internals::scene::to_glb(&meshmark::internals::mesh::shapes::asteroid(9, 12));

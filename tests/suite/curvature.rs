@@ -1,5 +1,6 @@
 //! Curvature against what is known exactly.
 
+use crate::portable_test;
 use crate::support::fixtures::cuboid;
 use glam::DVec3;
 use meshmark::internals::geometry::{
@@ -8,7 +9,6 @@ use meshmark::internals::geometry::{
 };
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// By differential geometry and by quadrics.
 fn both(mesh: &Mesh) -> [Curvature; 2] {
@@ -89,7 +89,7 @@ type Truth = fn(DVec3) -> [f64; 2];
 
 /// By quadrics both curvatures converge on every surface, however its quads are split: with the square of the edges where a
 /// mesh is alike all over, with the edges where it is not.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_of_quadrics_converges() {
     let cases: [(&str, [Mesh; 3], Truth, f64); 4] = [
         (
@@ -119,7 +119,7 @@ fn curvature_of_quadrics_converges() {
 
 /// By differential geometry curvature converges where rings are regular; elsewhere it stays as near as this, at every resolution
 /// (Xu 2006 shows that no such formula converges everywhere).
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_of_differential_geometry_is_near_the_truth() {
     let errors_of = |mesh: Mesh, truth: Truth| errors(&mesh, &both(&mesh)[0], truth);
     let spheres = [3, 4, 5].map(|rounds| errors_of(shapes::icosphere(rounds), |_| [1.0, 1.0]));
@@ -138,7 +138,7 @@ fn curvature_of_differential_geometry_is_near_the_truth() {
     assert!(gaussian < 0.01 && mean < 0.007, "{gaussian} {mean}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_integrals_obey_gauss_and_bonnet() {
     for (name, mesh, characteristic) in [
         ("sphere", shapes::asteroid(30, 40), 2.0),
@@ -162,7 +162,7 @@ fn curvature_integrals_obey_gauss_and_bonnet() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_has_principal_directions_of_its_surface() {
     let sphere = shapes::icosphere(4);
     let saddle = saddle(40);
@@ -185,7 +185,7 @@ fn curvature_has_principal_directions_of_its_surface() {
 }
 
 /// Fewer points than unknowns, or all of them on one line: still finite, and flat where they are.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_of_poor_neighbourhoods_is_finite() {
     let triangle = Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
@@ -214,7 +214,7 @@ fn curvature_of_poor_neighbourhoods_is_finite() {
     assert!(both(&tetrahedron)[1].mean.iter().all(|&mean| mean > 0.0));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_follows_scale() {
     let mesh = shapes::asteroid(20, 30);
     let large = mesh.with_positions(mesh.positions.iter().map(|p| *p * 1e3 + 1e5).collect());
@@ -228,7 +228,7 @@ fn curvature_follows_scale() {
 }
 
 /// A box: right angles at its edges, nothing across its diagonals; outside in, furrows.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_dihedral_angles_of_a_box() {
     let mut mesh = cuboid(DVec3::ONE);
     for sign in [1.0, -1.0] {
@@ -256,7 +256,7 @@ fn curvature_dihedral_angles_of_a_box() {
 
 /// A pyramid's tip, by hand: four faces of slope 45 degrees, moved to a corner of the base each costs the square of its distance
 /// from the planes of the two faces that do not have that corner.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn curvature_collapse_cost_of_a_pyramid() {
     let mesh = Mesh {
         positions: vec![

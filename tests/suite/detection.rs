@@ -1,20 +1,20 @@
 //! The bound: what it is, that it holds, and that it survives extreme numbers.
 
+use crate::portable_test;
 use crate::support::fixtures::key;
 use meshmark::internals::detection::{
     LN_P_FOUND, LN_P_TRACE, Statistic, exponents_of_errors, ln_p_of_errors, union,
 };
 use std::f64::consts::TAU;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_bound_is_the_squared_sum_over_the_energy() {
     let statistic = Statistic::new([(3.0, 4.0), (-1.0, 2.0), (2.0, 2.0)]);
     assert!((statistic.ln_p() + 16.0 / 24.0).abs() < 1e-12);
     assert_eq!(statistic.agreement(), 0.5);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_nothing_and_disagreement_prove_nothing() {
     assert_eq!(Statistic::new([]).ln_p(), 0.0);
     assert_eq!(Statistic::new([]).agreement(), 0.0);
@@ -22,7 +22,7 @@ fn detection_nothing_and_disagreement_prove_nothing() {
     assert_eq!(Statistic::new([(0.0, 0.0)]).ln_p(), 0.0);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_neither_underflows_nor_overflows() {
     for scale in [1e-150, 1.0, 1e150] {
         let statistic = Statistic::new((0..2_000).map(|_| (scale, scale)));
@@ -35,7 +35,7 @@ fn detection_neither_underflows_nor_overflows() {
 }
 
 /// Whatever a carrier gives, no term says more than its weight allows.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_no_value_exceeds_its_weight() {
     let perfect = Statistic::new([(1.0, 1.0); 4]);
     for beyond in [1.0 + 1e-9, 3.0, 1e300, f64::INFINITY] {
@@ -56,20 +56,20 @@ fn detection_no_value_exceeds_its_weight() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_unions_add_logarithms_and_end_at_certainty() {
     assert_eq!(union(-10.0, libm::log(4.0)), -10.0 + libm::log(4.0));
     assert_eq!(union(-1.0, 5.0), 0.0);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_thresholds_are_what_they_say() {
     assert!((LN_P_FOUND - libm::log(1e-9)).abs() < 1e-12);
     assert!((LN_P_TRACE - libm::log(1e-4)).abs() < 1e-12);
 }
 
 /// Random dithers on weights of every size: each tail of the statistic stays below its bound.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_bound_holds_for_random_dithers() {
     const TRIALS: u64 = 4_000;
     let random = key(3).prf("dither");
@@ -97,7 +97,7 @@ fn detection_bound_holds_for_random_dithers() {
 }
 
 /// Responses of very different sizes, and errors as the dithers of a key that marked nothing give them.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_bound_of_errors_holds_for_random_dithers() {
     let prf = key(9).prf("errors");
     let uniform = |address: u64| (prf.at(address).0 >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
@@ -121,7 +121,7 @@ fn detection_bound_of_errors_holds_for_random_dithers() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_errors_that_are_none_say_nothing() {
     let none: [(f64, f64); 0] = [];
     assert_eq!(ln_p_of_errors(none.into_iter()), 0.0);
@@ -134,7 +134,7 @@ fn detection_errors_that_are_none_say_nothing() {
     assert!(sure < -200.0, "{sure}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn detection_exponents_of_errors_add_up_to_the_bound() {
     let unit = |i: u32| f64::from(i * 37 % 101) / 101.0;
     let terms: Vec<(f64, f64)> = (0..400)

@@ -1,5 +1,6 @@
 //! The DIRECTION carrier: what notes are in.
 
+use crate::portable_test;
 use crate::support::fixtures::key;
 use glam::DVec3;
 use meshmark::internals::attack::{catmull_clark, noise, reorder, similarity, simplify};
@@ -7,7 +8,6 @@ use meshmark::internals::carrier::direction::{Cells, NUM_TESTS};
 use meshmark::internals::code::Block;
 use meshmark::internals::detection::{LN_P_FOUND, union};
 use meshmark::internals::mesh::{Mesh, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: [u8; 8] = *b"Bata Vas";
 
@@ -27,7 +27,7 @@ fn in_cells(mesh: &Mesh, owner: u8, message: &[u8]) -> Mesh {
     mesh.with_positions(positions.collect())
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cells_are_read_blind() {
     let mesh = pebble();
     let marked = in_cells(&mesh, 1, &MESSAGE);
@@ -52,7 +52,7 @@ fn cells_are_read_blind() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cells_say_nothing_to_another_key() {
     let marked = in_cells(&pebble(), 1, &MESSAGE);
     let word = Block::Tc128.encode(&MESSAGE);
@@ -66,7 +66,7 @@ fn cells_say_nothing_to_another_key() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cells_of_nothing() {
     let cells = Cells::new(&key(1), Block::Tc128, STEP);
     assert!(cells.read(&Mesh::default()).is_empty());

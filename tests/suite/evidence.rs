@@ -1,16 +1,16 @@
 //! Evidence as bytes.
 
+use crate::portable_test;
 use crate::support::fixtures::asteroid;
 use meshmark::Evidence;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn evidence_is_its_bytes() {
     let evidence = Evidence::of_mesh(&asteroid());
     assert_eq!(Evidence::from_bytes(&evidence.to_bytes()), Ok(evidence));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn evidence_refuses_what_is_none_by_name() {
     let bytes = Evidence::of_mesh(&asteroid()).to_bytes();
     let with = |offset: usize, value: u8| {

@@ -1,5 +1,6 @@
 //! Normals and distortion against what is known exactly.
 
+use crate::portable_test;
 use crate::support::fixtures::cuboid;
 use glam::{DMat3, DVec3};
 use meshmark::internals::geometry::spectral::{self, InverseFilter};
@@ -7,9 +8,8 @@ use meshmark::internals::geometry::{
     Distortion, Pose, Quadrature, Sample, diagonal, outward, refined, roughness, vertex_normals,
 };
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_normals_of_a_sphere_are_radial() {
     let mut sphere = shapes::asteroid(60, 90);
     sphere.positions.iter_mut().for_each(|p| *p = p.normalize());
@@ -22,7 +22,7 @@ fn geometry_normals_of_a_sphere_are_radial() {
     assert!(worst > 0.998, "{worst}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_isolated_vertices_have_no_normal() {
     let mesh = Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
@@ -34,7 +34,7 @@ fn geometry_isolated_vertices_have_no_normal() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_distortion_is_relative_to_the_diagonal() {
     let before = [DVec3::ZERO, DVec3::new(3.0, 4.0, 0.0), DVec3::X, DVec3::Y];
     let mut after = before;
@@ -57,7 +57,7 @@ fn geometry_distortion_is_relative_to_the_diagonal() {
 }
 
 /// A flat rectangle of 4 by 2: variances 16/12 and 4/12 along its sides, none across.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_pose_of_a_rectangle_is_exact() {
     let turn = DMat3::from_rotation_z(0.4) * DMat3::from_rotation_x(1.1);
     let corner = |x: f64, y: f64| turn * DVec3::new(x, y, 0.0) + DVec3::new(5.0, 6.0, 7.0);
@@ -81,7 +81,7 @@ fn geometry_pose_of_a_rectangle_is_exact() {
     assert!((pose.canonical(corner(2.0, 0.0)).x.abs() - 2.0 / pose.size).abs() < 1e-12);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_pose_goes_along_with_the_surface() {
     let knot = shapes::torus_knot(60, 12);
     let moved = meshmark::internals::attack::similarity(&knot, 9);
@@ -100,7 +100,7 @@ fn geometry_pose_goes_along_with_the_surface() {
     assert!(change.to_cols_array().iter().all(|c| c.abs() < 1e-12));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_surfaces_of_revolution_have_no_distinct_axes() {
     let mut sphere = shapes::asteroid(20, 30);
     sphere.positions.iter_mut().for_each(|p| *p = p.normalize());
@@ -127,7 +127,7 @@ fn volume_pose(mesh: &Mesh) -> Option<Pose> {
 }
 
 /// Variances of a solid cuboid are the squared sides over 12.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_volume_pose_of_a_cuboid_is_exact() {
     let pose = volume_pose(&far_box()).unwrap();
     assert!(pose.centre.distance(DVec3::new(9.0, 8.0, 7.5)) < 1e-12);
@@ -136,7 +136,7 @@ fn geometry_volume_pose_of_a_cuboid_is_exact() {
 }
 
 /// Without its lid a cuboid has the same frame: a cap closes it.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_volume_pose_closes_holes() {
     let mut open = far_box();
     open.triangles.truncate(10);
@@ -152,7 +152,7 @@ fn geometry_volume_pose_closes_holes() {
     assert_eq!(volume_pose(&sheet), None);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_outward_turns_whole_patches() {
     let mut inside_out = far_box();
     inside_out
@@ -190,7 +190,7 @@ fn samples(mesh: &Mesh, max_edge: f64) -> Vec<(DVec3, Sample)> {
         .collect()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_samples_are_exact_to_the_first_order() {
     let mesh = far_box();
     for max_edge in [100.0, 1.0, 0.3] {
@@ -219,7 +219,7 @@ fn geometry_samples_are_exact_to_the_first_order() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_inverse_filter_undoes_smoothing() {
     let knot = shapes::torus_knot(80, 16);
     let smoothed = meshmark::internals::attack::smooth(&knot, 0.1, 10);
@@ -240,7 +240,7 @@ fn geometry_inverse_filter_undoes_smoothing() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_roughness_tells_flat_from_rough() {
     let mut half_rough = shapes::terrain(40);
     half_rough
@@ -271,7 +271,7 @@ fn geometry_roughness_tells_flat_from_rough() {
 }
 
 /// A crease is no roughness, and what is beyond it does not count.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_roughness_ends_at_creases() {
     let mut block = shapes::cuboid(DVec3::new(1.0, 1.0, 1.0), [12, 12, 12]);
     let rough = meshmark::internals::attack::noise(&block, 0.01, 3);
@@ -293,7 +293,7 @@ fn geometry_roughness_ends_at_creases() {
 }
 
 /// A coarse sphere's chords are too short; arcs half as high as the normals say bring back about half of what is missing.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn geometry_refined_mesh_is_nearer_to_the_sphere() {
     let coarse = shapes::asteroid(12, 24);
     let refined = refined(&coarse);

@@ -1,12 +1,12 @@
 //! Golden marks: the same bytes natively and in wasm, today and after every change that is not a new format.
 
+use crate::portable_test;
 use crate::support::fixtures::{gallery, key, payload};
 use crate::support::gltf_builder::{Built, Packing};
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::to_glb;
 use meshmark::{EmbedOptions, Files, Model, Strength, embed, measure};
 use sha2::{Digest, Sha256};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// The rock that docs/VECTORS.md marks too.
 pub const HOST_RINGS: u32 = 30;
@@ -44,7 +44,7 @@ fn glb(mesh: &Mesh) -> Built {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn golden_torus_knot() {
     check(
         &glb(&shapes::torus_knot(120, 20)),
@@ -52,7 +52,7 @@ fn golden_torus_knot() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn golden_asteroid() {
     check(
         &glb(&shapes::asteroid(HOST_RINGS, HOST_SECTORS)),
@@ -60,7 +60,7 @@ fn golden_asteroid() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn golden_terrain() {
     check(
         &glb(&shapes::terrain(40)),
@@ -68,7 +68,7 @@ fn golden_terrain() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn golden_gallery() {
     check(
         &gallery(Packing::Glb),

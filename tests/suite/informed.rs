@@ -1,5 +1,6 @@
 //! Reading with the original, and with the record of an embedding.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, key, marked, payload};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{bend, crop, delaunay, quantize, remesh, similarity, simplify};
@@ -15,7 +16,6 @@ use meshmark::{
     compare, compare_overlaid, compare_with_record, detect, embed, record, verify_with_original,
     verify_with_record,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// An original, its marked copy, and the copy's mesh.
 fn case() -> (Vec<u8>, Embedding, Mesh) {
@@ -44,7 +44,7 @@ fn assert_found(answer: &Comparison, what: &str) {
     assert_ne!(answer.witness, Some(Witness::Blind), "{what}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_finds_pieces_with_other_triangles() {
     let (original, marked, mesh) = case();
     let kept = record(
@@ -63,7 +63,7 @@ fn informed_finds_pieces_with_other_triangles() {
     assert_found(&answer, "with the record");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_finds_mirrored_and_stretched_copies() {
     let (original, _, mesh) = case();
     let stretched = mesh
@@ -83,7 +83,7 @@ fn informed_finds_mirrored_and_stretched_copies() {
 }
 
 /// A part whose areas, and so the axes of its moments, a stretch changes most.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_lays_a_stretched_part_on_its_original() {
     let part = shapes::cad_part();
     let original = Original::new(&part);
@@ -100,7 +100,7 @@ fn informed_lays_a_stretched_part_on_its_original() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_tells_an_unmarked_copy_from_another_shape() {
     let (original, ..) = case();
     let unmarked = to_glb(&similarity(&asteroid(), 6));
@@ -123,7 +123,7 @@ fn informed_tells_an_unmarked_copy_from_another_shape() {
 
 /// A tenth of a model, with its triangles: what windows and rings say there adds up, and no less is enough. And where a mark is in rings alone,
 /// other triangles between the same vertices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_reads_rings_by_the_vertices_that_were_kept() {
     let (original, _, mesh) = case();
     let piece = to_glb(&similarity(&crop(&mesh, 0.88, 1), 8));
@@ -158,7 +158,7 @@ fn two_pieces(mesh: &Mesh) -> Mesh {
 }
 
 /// What one motion does not lay on the original is taken apart: limbs in another pose, and pieces that were put together anew.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_takes_apart_what_lies_in_several_ways() {
     let (original, marked, mesh) = case();
     let options = RecordOptions::default();
@@ -187,7 +187,7 @@ fn informed_takes_apart_what_lies_in_several_ways() {
 }
 
 /// One payload is tested, and charged for one: a wrong one is not found beside a right key.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_charges_one_payload_where_one_is_expected() {
     let (original, marked, mesh) = case();
     let options = RecordOptions::default();
@@ -222,7 +222,7 @@ fn informed_charges_one_payload_where_one_is_expected() {
 }
 
 /// What a person is shown: the piece where it was cut out, with the mark's evidence there and nowhere else.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_lays_a_piece_on_its_original() {
     let (original, marked, mesh) = case();
     let piece = simplify(&crop(&mesh, 0.3, 3), 0.5);
@@ -260,7 +260,7 @@ fn informed_lays_a_piece_on_its_original() {
 }
 
 /// Keys that marked nothing, on a marked copy that lies on its original.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_bound_holds_for_wrong_keys() {
     let (original, _, suspect) = case();
     let original = mesh_of(&original);
@@ -306,7 +306,7 @@ fn informed_bound_holds_for_wrong_keys() {
     assert!(below(-3.0) <= 1 && below(-6.0) == 0, "{charged:?}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_records_are_refused_where_they_are_not_as_they_were_written() {
     let (original, marked, mesh) = case();
     let options = RecordOptions::default()
@@ -342,7 +342,7 @@ fn informed_records_are_refused_where_they_are_not_as_they_were_written() {
 }
 
 /// docs/FORMAT.md, "The record": what is sealed never changes.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn informed_seals_never_change() {
     let sealed = key(1).seal(b"sealed", b"clear");
     assert_eq!(key(1).unseal(&sealed, b"clear").unwrap(), b"sealed");

@@ -1,7 +1,7 @@
 //! Keys: the format's derivation, and its laws. The primitives' own vectors are for their crates to test.
 
+use crate::portable_test;
 use meshmark::Key;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
@@ -19,7 +19,7 @@ fn key_is_the_same_however_the_words_are_typed() {
 }
 
 /// What docs/FORMAT.md promises: a change here orphans every mark that was ever made.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn key_derivation_never_changes() {
     let key = Key::from_passphrase("Ada", "correct horse battery staple").unwrap();
     assert_eq!(
@@ -33,7 +33,7 @@ fn key_derivation_never_changes() {
 }
 
 /// The same of a work's key.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn key_of_a_work_never_changes() {
     let key = Key::from_bytes(&[7; Key::BYTES]).unwrap();
     let work = |title| hex(&*key.for_work(title).unwrap().to_bytes());
@@ -48,7 +48,7 @@ fn key_of_a_work_never_changes() {
     assert_eq!(error.code(), "key.empty-work");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn key_sub_keys_differ_by_label_and_by_key() {
     let [a, b] = [[1; 32], [2; 32]].map(|bytes| Key::from_bytes(&bytes).unwrap());
     assert_ne!(a.prf("x").at(0), a.prf("y").at(0));
@@ -56,7 +56,7 @@ fn key_sub_keys_differ_by_label_and_by_key() {
     assert_eq!(a.prf("x").at(0), a.clone().prf("x").at(0));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn key_refuses_what_is_no_secret() {
     assert_eq!(
         Key::from_passphrase(" \t", "p").unwrap_err().code(),
@@ -69,7 +69,7 @@ fn key_refuses_what_is_no_secret() {
     assert_eq!(Key::from_bytes(&[0; 31]).unwrap_err().code(), "key.length");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn key_is_never_shown() {
     assert_eq!(
         format!("{:?}", Key::from_bytes(&[7; 32]).unwrap()),

@@ -1,5 +1,6 @@
 //! The same surface written otherwise, and with more beside it that is not seen: triangles that are there twice, fins, shells, strays.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, payload};
 use glam::DVec3;
 use meshmark::internals::attack::{
@@ -10,7 +11,6 @@ use meshmark::internals::document::Document;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{Carrier, EmbedOptions, Embedding, Strength, Verdict, detect, embed, inspect};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn gathered(mesh: &Mesh) -> Scene {
     Scene::gather(&Document::read(&to_glb(mesh), &Default::default()).unwrap()).unwrap()
@@ -50,7 +50,7 @@ fn places(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
 }
 
 /// Whatever the order and the directions in the file, what is there twice is there once, and faces as it did, or outwards.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn layers_of_one_surface_are_one() {
     for (name, mesh) in [
         ("closed", shapes::asteroid(20, 30)),
@@ -70,7 +70,7 @@ fn layers_of_one_surface_are_one() {
 }
 
 /// Of each attack on how triangles are written: what is found without it is found with it, in each carrier alone.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn layers_hide_no_carrier() {
     for carrier in Carrier::STANDARD {
         let model = mesh_of(&marked(&shapes::asteroid(40, 60), &[carrier]));
@@ -87,7 +87,7 @@ fn layers_hide_no_carrier() {
 }
 
 /// What SOLID alone can hold, for triangles or neighbourhoods are others.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn layers_leave_the_shape_readable() {
     let model = mesh_of(&marked(&shapes::asteroid(40, 60), &[Carrier::Solid]));
     let split = Mesh::joined([model.clone(), both_sides(&midpoint(&model))]);
@@ -117,7 +117,7 @@ fn layers_leave_the_shape_readable() {
 }
 
 /// A model whose surface is there twice is marked as the same model that is there once, in both carriers.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn layers_of_a_host_move_together() {
     let rock = shapes::asteroid(40, 60);
     let one = marked(&rock, &Carrier::STANDARD);
@@ -136,7 +136,7 @@ fn layers_of_a_host_move_together() {
 }
 
 /// A speck far away says nothing of how large the model is; it stays, and is named.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn layers_do_not_count_strays() {
     let rock = shapes::asteroid(40, 60);
     let alone = marked(&rock, &Carrier::STANDARD);

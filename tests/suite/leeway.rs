@@ -1,5 +1,6 @@
 //! How far a mark moves a vertex: by its part and its triangles, whatever the scene around them is.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, payload, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::noise;
@@ -8,7 +9,6 @@ use meshmark::internals::geometry::{Bounds, Deformation, Leeway, Parts, cuts, di
 use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, EmbedReport, Strength, embed, embed_note};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A large rock, and thirty small ones about it, each of few triangles: what a mark of the whole scene would bend.
 fn scene() -> Mesh {
@@ -69,7 +69,7 @@ fn report(strength: Strength) -> (EmbedReport, (f64, f64)) {
     (marked.report, seen)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_small_parts_keep_their_shape_at_every_strength() {
     let number = Strength::new(0.0006).unwrap();
     for (strength, part, turn) in [
@@ -89,7 +89,7 @@ fn leeway_small_parts_keep_their_shape_at_every_strength() {
 }
 
 /// Who insists on more gets more, and is told what it does.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_a_number_beyond_strong_warns() {
     let (report, seen) = report(Strength::new(0.01).unwrap());
     assert!(seen.0 > 0.02 && seen.1 < 90.0, "{seen:?}");
@@ -99,7 +99,7 @@ fn leeway_a_number_beyond_strong_warns() {
 }
 
 /// A limit in scene units holds after rounding, and is what the report says.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_keeps_to_a_largest_movement() {
     let rock = to_glb(&shapes::asteroid(40, 60));
     let most = |options: &EmbedOptions| embed(&rock, payload(), &key(1), options).unwrap().report;
@@ -114,7 +114,7 @@ fn leeway_keeps_to_a_largest_movement() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_holds_for_notes() {
     let host = to_glb(&Mesh::joined([scene(), shapes::asteroid(60, 80)]));
     let report = embed_note(&host, "small parts", &key(1)).unwrap().report;
@@ -123,7 +123,7 @@ fn leeway_holds_for_notes() {
 }
 
 /// Whatever is asked for, nothing turns over, no displacement becomes longer, and instances still move as one.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_keeps_any_displacement_within_its_bounds() {
     let mesh = shapes::low_poly();
     let parts = Parts::new(&mesh);
@@ -169,7 +169,7 @@ fn leeway_keeps_any_displacement_within_its_bounds() {
 }
 
 /// What would go too far is named, so that it can be left where it was.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn leeway_names_what_is_beyond() {
     let mesh = shapes::low_poly();
     let mut after = mesh.positions.clone();
@@ -184,7 +184,7 @@ fn plate(thickness: f64) -> Mesh {
 }
 
 /// A sheet that is pushed through the other one of its part cuts it, along the way and not at its neighbours; one that lay upon it did before.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cuts_are_where_a_surface_goes_through_itself() {
     let num_cuts = |mesh: &Mesh, depth: f64| {
         let middle = |p: &DVec3| p.x.abs() < 0.1 && p.y.abs() < 0.1 && p.z > 0.0;
@@ -210,7 +210,7 @@ fn moved(mesh: &Mesh, by: DVec3) -> Mesh {
 }
 
 /// Whatever the strength: noise as strong makes these models cut themselves, the mark does not.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cuts_are_none_that_a_mark_makes() {
     let thin = shapes::asteroid(40, 60);
     let flat = thin

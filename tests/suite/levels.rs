@@ -1,5 +1,6 @@
 //! Levels of detail, and what else no scene shows.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, payload};
 use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use meshmark::internals::attack::simplify;
@@ -7,7 +8,6 @@ use meshmark::internals::document::Document;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Embedding, Model, Verdict, detect, embed};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn add(builder: &mut GltfBuilder, mesh: &Mesh) -> usize {
     let points: Vec<[f64; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
@@ -34,7 +34,7 @@ fn levels() -> Built {
     builder.build()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn levels_that_no_scene_shows_are_marked_and_read_alone() {
     let Built { bytes, files } = levels();
     let host = Model::new(&bytes).with_files(&files);

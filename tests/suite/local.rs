@@ -48,15 +48,24 @@ fn ln_p(measurement: &Measurement, reader: u8) -> f64 {
 
 #[test]
 fn local_is_found_in_half_a_model_that_was_simplified_to_half() {
+    hold_half(0);
+}
+
+#[test]
+#[ignore = "takes as long again: cargo xtask test --all"]
+fn local_is_found_in_another_half() {
+    hold_half(1);
+}
+
+/// What is left on one side of a plane says whose it is, and nothing under another key.
+fn hold_half(plane: u64) {
     let mut marked = shapes::cad_part();
     marked.displace(&embedded_part().displacement);
-    for seed in 0..2 {
-        let piece = simplify(&crop(&marked, 0.5, seed), 0.5);
-        let suspect = Measurement::new(&similarity(&piece, seed));
-        let [own, other] = [1, 2].map(|reader| ln_p(&suspect, reader));
-        assert!(own < -25.0, "plane {seed}: {own}");
-        assert!(other > -8.0, "plane {seed}, another key: {other}");
-    }
+    let piece = simplify(&crop(&marked, 0.5, plane), 0.5);
+    let suspect = Measurement::new(&similarity(&piece, plane));
+    let [own, other] = [1, 2].map(|reader| ln_p(&suspect, reader));
+    assert!(own < -25.0, "{own}");
+    assert!(other > -8.0, "another key: {other}");
 }
 
 #[test]

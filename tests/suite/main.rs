@@ -2,6 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a test that unwraps nothing fails, as it should
 
+// The attribute of a test for every target. Natively it is the compiler's own, and no crate for it has to be compiled.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use core::prelude::v1::test as portable_test;
+#[cfg(target_arch = "wasm32")]
+pub(crate) use wasm_bindgen_test::wasm_bindgen_test as portable_test;
+
 mod architecture;
 #[cfg(not(target_arch = "wasm32"))]
 // the modules for JavaScript are without LOCAL, and embedding it takes a minute there

@@ -1,8 +1,8 @@
 //! Edges, rings and winding of good and bad meshes.
 
+use crate::portable_test;
 use glam::DVec3;
 use meshmark::internals::mesh::{Admissible, Edges, Mesh, Orbit, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
@@ -14,7 +14,7 @@ fn mesh(num_vertices: u32, triangles: &[[u32; 3]]) -> Mesh {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_closed_surface_has_no_boundary() {
     let tetrahedron = mesh(4, &TETRAHEDRON);
     let edges = Edges::new(&tetrahedron);
@@ -31,7 +31,7 @@ fn mesh_closed_surface_has_no_boundary() {
     assert_eq!(rings.neighbours(2), [0, 1, 3]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_hole_opens_its_rings() {
     let open = mesh(4, &TETRAHEDRON[..3]);
     let edges = Edges::new(&open);
@@ -43,7 +43,7 @@ fn mesh_hole_opens_its_rings() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_third_face_at_an_edge_is_non_manifold() {
     let fin = mesh(5, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 1, 4]]);
     let edges = Edges::new(&fin);
@@ -59,7 +59,7 @@ fn mesh_third_face_at_an_edge_is_non_manifold() {
     assert!(!rings.is_closed(0) && !rings.is_closed(1) && rings.is_closed(2) && rings.is_closed(3));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_components_and_isolated_vertices() {
     let two = mesh(9, &[[0, 1, 2], [2, 1, 3], [4, 5, 6], [5, 7, 6]]);
     let edges = Edges::new(&two);
@@ -68,7 +68,7 @@ fn mesh_components_and_isolated_vertices() {
     assert!(!edges.rings(9).is_closed(8));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_winding_follows_the_majority_of_each_patch() {
     let mut knot = shapes::torus_knot(30, 10);
     let turned: Vec<bool> = (0..knot.triangles.len())
@@ -85,7 +85,7 @@ fn mesh_winding_follows_the_majority_of_each_patch() {
     assert_eq!(Edges::new(&knot).winding().flips, turned);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_one_sided_surface_is_accepted() {
     let strip: Vec<[u32; 3]> = (0..7).map(|i| [i, (i + 1) % 7, (i + 2) % 7]).collect();
     let edges = Edges::new(&mesh(7, &strip));
@@ -93,7 +93,7 @@ fn mesh_one_sided_surface_is_accepted() {
     assert_eq!(edges.num_components(), 1);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_without_anything_has_nothing() {
     let edges = Edges::new(&Mesh::default());
     assert_eq!(
@@ -106,7 +106,7 @@ fn mesh_without_anything_has_nothing() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_shapes_are_what_they_say() {
     let knot = shapes::torus_knot(40, 12);
     assert_eq!((knot.positions.len(), knot.triangles.len()), (480, 960));
@@ -154,7 +154,7 @@ fn kind(mesh: &Mesh) -> (usize, usize, usize, i64) {
     )
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_shapes_without_axes_are_what_they_say() {
     assert_eq!(kind(&shapes::torus(30, 12)), (360, 1, 0, 0));
     assert_eq!(kind(&shapes::vase(40, 20)), (801, 1, 20, 1));
@@ -172,13 +172,13 @@ fn mesh_shapes_without_axes_are_what_they_say() {
     assert!(capsule.iter().all(|p| (distance(p) - 0.5).abs() < 1e-12));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_machined_part_is_what_it_says() {
     // Genus 6: 2 - 2 * 6.
     assert_eq!(kind(&shapes::cad_part()), (5526, 1, 0, -10));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_game_shapes_are_what_they_say() {
     assert_eq!(kind(&shapes::low_poly()), (602, 1, 0, 2));
     // Six spheres by topology and a torus.
@@ -188,7 +188,7 @@ fn mesh_game_shapes_are_what_they_say() {
     assert!(boundary > 1000, "most of it is open: {boundary}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn mesh_admissible_displacements_are_a_projection() {
     let turn = glam::DMat3::from_rotation_z(1.0) * 2.0;
     let admissible = Admissible {

@@ -1,5 +1,6 @@
 //! Notes, from bytes to texts, alone and beside a mark.
 
+use crate::portable_test;
 use crate::support::fixtures::{gallery, key, marked};
 use crate::support::gltf_builder::{Built, Packing};
 use meshmark::internals::mesh::shapes;
@@ -8,7 +9,6 @@ use meshmark::{
     Error, Model, NoteEmbedding, NoteReading, Verdict, demo_model, embed_note, extract, measure,
     note_capacity, read_note,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn noted(model: &[u8], text: &str) -> Result<NoteEmbedding, Error> {
     embed_note(model, text, &key(1))
@@ -18,7 +18,7 @@ fn read(model: &[u8], reader: u8) -> NoteReading {
     read_note(model, &key(reader)).unwrap()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn note_is_read_by_its_key_and_no_other() {
     for text in ["A", "Grüße", "made in Niš", "© 2012 Ada Lovelace, London"] {
         let noted = noted(&demo_model(), text).unwrap();
@@ -40,7 +40,7 @@ fn note_is_read_by_its_key_and_no_other() {
 }
 
 /// The order in which both keep all that they have: the note first.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn note_stands_a_mark_on_top_and_leaves_it_alone() {
     let noted = noted(&demo_model(), "below the mark").unwrap();
     let [alone, both] =
@@ -63,7 +63,7 @@ fn note_stands_a_mark_on_top_and_leaves_it_alone() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn note_fits_every_packing() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
         let Built { bytes, files } = gallery(packing);
@@ -77,7 +77,7 @@ fn note_fits_every_packing() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn note_that_does_not_fit_is_refused() {
     let code = |model: &[u8], text: &str| noted(model, text).unwrap_err().code();
     let small = to_glb(&shapes::asteroid(40, 60));
@@ -94,7 +94,7 @@ fn note_that_does_not_fit_is_refused() {
 }
 
 /// No key reads a note in a model that was made without it.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn wrong_keys_read_no_notes() {
     let noted = noted(&demo_model(), "mine").unwrap();
     for stranger in 2..8 {

@@ -1,9 +1,9 @@
 //! Tags and numbers.
 
+use crate::portable_test;
 use meshmark::{Payload, PayloadError};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn payload_tag_and_number_are_two_spellings() {
     for (tag, number) in [
         ("AAAAAAAA", 0),
@@ -22,21 +22,21 @@ fn payload_tag_and_number_are_two_spellings() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn payload_tags_come_back() {
     for tag in ["a", "Z9", "x-.y", "ADA-1", "12345678", "......-"] {
         assert_eq!(Payload::from_tag(tag).unwrap().tag().as_deref(), Some(tag));
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn payload_the_last_number_has_no_tag() {
     let last = (1 << Payload::BITS) - 1;
     assert_eq!(Payload::from_number(last).unwrap().tag(), None);
     assert_eq!(Payload::from_number(last + 1), Err(PayloadError::Range));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn payload_refuses_other_tags_by_name() {
     for (tag, code) in [
         ("", "payload.length"),

@@ -1,5 +1,6 @@
 //! Scenes of several objects: what is one, and that a mark is found in what was taken out of a scene or put into one.
 
+use crate::portable_test;
 use crate::support::fixtures::{cuboid, key, payload, strong};
 use crate::support::gltf_builder::{Component, GltfBuilder, Layout, Packing, primitive};
 use glam::{DMat3, DQuat, DVec3};
@@ -13,7 +14,6 @@ use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
 use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{Carrier, EmbedOptions, Extraction, Strength, Verdict, detect, embed};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn moved(mesh: &Mesh, size: f64, by: DVec3) -> Mesh {
     mesh.with_positions(mesh.positions.iter().map(|p| *p * size + by).collect())
@@ -45,7 +45,7 @@ fn sizes(pieces: &[Vec<[u32; 3]>]) -> Vec<usize> {
     pieces.iter().map(Vec::len).collect()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_are_what_touches_and_its_patches() {
     let [body, hat, stone] =
         [(24, 36), (12, 18), (10, 14)].map(|(a, b)| shapes::asteroid(a, b).triangles.len());
@@ -70,14 +70,14 @@ fn pieces_are_what_touches_and_its_patches() {
 }
 
 /// What is one object is read as a whole: nothing is charged for pieces.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_of_one_object_are_none() {
     let pieces = Pieces::of(&shapes::asteroid(24, 36));
     assert_eq!(pieces.in_order().count(), 0);
 }
 
 /// Objects that touch only just are not told apart for certain.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_that_hardly_touch_are_not_stable() {
     let rock = shapes::asteroid(24, 36);
     let diagonal = meshmark::internals::geometry::diagonal(&rock.positions);
@@ -119,7 +119,7 @@ fn found(suspect: &Mesh) -> Option<Option<usize>> {
 }
 
 /// A model beside, in, on and under what is not its owner's, then simplified to half: RING is gone, and the frame of all is another.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_hold_the_mark_of_a_model_among_others() {
     let model = marked(&shapes::asteroid(40, 60));
     let inside = moved(&shapes::cad_part(), 0.25, DVec3::new(0.1, 0.0, 0.05));
@@ -138,7 +138,7 @@ fn pieces_hold_the_mark_of_a_model_among_others() {
 
 /// A model of several parts among which something was hidden, and beside which something stands: their boxes touch, so that all is one
 /// object, and the model is what is left of it.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_hold_the_mark_of_a_model_of_parts_with_another_in_it() {
     let body = shapes::asteroid(40, 60);
     let hat = moved(&shapes::asteroid(24, 36), 0.4, DVec3::Z * 1.05);
@@ -154,7 +154,7 @@ fn pieces_hold_the_mark_of_a_model_of_parts_with_another_in_it() {
 }
 
 /// A found piece is called what its node is, or the node above it.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_that_are_found_are_named() {
     let rock = marked(&shapes::asteroid(40, 60));
     let room = moved(&cuboid(DVec3::splat(2.0)), 4.0, DVec3::splat(-4.0));
@@ -175,7 +175,7 @@ fn pieces_that_are_found_are_named() {
 }
 
 /// Each object of a scene has the mark, and keeps it when it is taken out.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_hold_the_mark_of_their_scene() {
     let rock = shapes::asteroid(36, 54);
     let pebble = rock
@@ -195,7 +195,7 @@ fn pieces_hold_the_mark_of_their_scene() {
 }
 
 /// What RING does to an object follows the object's size, as what SOLID did: a pebble far from a rock keeps SOLID.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_that_are_small_keep_their_mark_beneath_ring() {
     let pebble = moved(&shapes::asteroid(36, 54), 0.06, DVec3::X * 4.0);
     let scene = marked(&Mesh::joined([shapes::asteroid(40, 60), pebble]));
@@ -207,7 +207,7 @@ fn pieces_that_are_small_keep_their_mark_beneath_ring() {
 }
 
 /// An object and its instance, far apart, are marked once and move as one.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_that_are_instances_share_their_mark() {
     let rock = shapes::asteroid(40, 60);
     let num = rock.positions.len() as u32;
@@ -249,7 +249,7 @@ fn pieces_that_are_instances_share_their_mark() {
 }
 
 /// Objects so far apart that the whole is read at no pitch: evidence says so too, and pieces keep their numbers.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn pieces_keep_their_numbers_where_the_whole_is_not_read() {
     let rock = shapes::asteroid(24, 36);
     let far = |number: u32| moved(&rock, 1.0, DVec3::X * 60.0 * f64::from(number));

@@ -6,6 +6,7 @@ use meshmark::internals::geometry::places::{Invariant, Place, SUPPORT, areas, pl
 use meshmark::internals::geometry::{diagonal, oriented};
 use meshmark::internals::mesh::{Mesh, shapes};
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
 
 /// The smallest and the largest width, as fractions of the diagonal.
 const WIDTHS: [f64; 2] = [0.02, 0.1];
@@ -17,15 +18,31 @@ fn found(mesh: &Mesh, diagonal: f64) -> Vec<Place> {
     places(&areas, &widths)
 }
 
-/// Those that are sharp, and whose width is well within the range.
-fn sharp(mesh: &Mesh) -> Vec<Place> {
-    let diagonal = diagonal(&mesh.positions);
-    let mut sharp = found(mesh, diagonal);
-    sharp.retain(|p| p.sharpness > 0.03 && p.width > 1.1 * WIDTHS[0] * diagonal);
-    sharp.retain(|p| p.width < 0.9 * WIDTHS[1] * diagonal);
-    assert!(sharp.len() > 8, "{} sharp places", sharp.len());
-    sharp
+/// A model, and its places that are sharp and whose width is well within the range.
+struct Whole {
+    name: &'static str,
+    mesh: Mesh,
+    sharp: Vec<Place>,
 }
+
+impl Whole {
+    fn new(name: &'static str, mesh: Mesh) -> Whole {
+        let diagonal = diagonal(&mesh.positions);
+        let mut sharp = found(&mesh, diagonal);
+        sharp.retain(|p| p.sharpness > 0.03 && p.width > 1.1 * WIDTHS[0] * diagonal);
+        sharp.retain(|p| p.width < 0.9 * WIDTHS[1] * diagonal);
+        assert!(sharp.len() > 8, "{} sharp places", sharp.len());
+        Whole { name, mesh, sharp }
+    }
+}
+
+/// Measured once for all tests.
+static WHOLES: LazyLock<[Whole; 2]> = LazyLock::new(|| {
+    [
+        Whole::new("creature", shapes::low_poly()),
+        Whole::new("rover", shapes::game_asset()),
+    ]
+});
 
 /// How far the place of the same kind that is nearest to where one should be is from it, in widths, and how much its own width differs.
 fn miss(all: &[Place], kind: (Invariant, bool), point: DVec3, width: f64) -> f64 {
@@ -37,31 +54,27 @@ fn miss(all: &[Place], kind: (Invariant, bool), point: DVec3, width: f64) -> f64
     misses.fold(f64::INFINITY, f64::min)
 }
 
-fn shapes() -> [(&'static str, Mesh); 2] {
-    [
-        ("creature", shapes::low_poly()),
-        ("rover", shapes::game_asset()),
-    ]
-}
-
 #[test]
 fn places_go_where_a_model_goes() {
-    for (name, mesh) in shapes() {
-        let host = sharp(&mesh);
+    for Whole { name, mesh, sharp } in &*WHOLES {
         for seed in 0..3 {
-            let moved = similarity(&mesh, seed);
+            let moved = similarity(mesh, seed);
             let vertex = |number: usize| (mesh.positions[number], moved.positions[number]);
             let scale = vertex(0).1.distance(vertex(9).1) / vertex(0).0.distance(vertex(9).0);
             let size = scale * diagonal(&mesh.positions);
             let all = found(&moved, size);
-            let affine = Affine::of(&mesh, &moved);
+            let affine = Affine::of(mesh, &moved);
             let is_lost = |place: &&Place| {
                 let kind = (place.invariant, place.is_high);
                 miss(&all, kind, affine.at(place.point), scale * place.width) > 0.03
             };
             // A grid that lies otherwise may step over one where two are near each other.
-            let lost = host.iter().filter(is_lost).count();
-            assert!(10 * lost <= host.len(), "{name}: {lost} of {}", host.len());
+            let lost = sharp.iter().filter(is_lost).count();
+            assert!(
+                10 * lost <= sharp.len(),
+                "{name}: {lost} of {}",
+                sharp.len()
+            );
         }
     }
 }
@@ -88,23 +101,22 @@ impl Affine {
 
 #[test]
 fn places_do_not_depend_on_triangles() {
-    for (name, mesh) in shapes() {
-        let host = sharp(&mesh);
+    for Whole { name, mesh, sharp } in &*WHOLES {
         let size = diagonal(&mesh.positions);
         for (attack, mesh, most) in [
-            ("split", midpoint(&mesh), 0.02),
-            ("remeshed", remesh(&mesh, 0.01), 0.2),
+            ("split", midpoint(mesh), 0.02),
+            ("remeshed", remesh(mesh, 0.01), 0.2),
         ] {
             let all = found(&mesh, size);
-            let misses = host.iter().map(|place| {
+            let misses = sharp.iter().map(|place| {
                 let kind = (place.invariant, place.is_high);
                 miss(&all, kind, place.point, place.width)
             });
             let lost = misses.clone().filter(|miss| *miss > most).count();
             assert!(
-                10 * lost <= host.len(),
+                10 * lost <= sharp.len(),
                 "{name} {attack}: {lost} of {} lost",
-                host.len()
+                sharp.len()
             );
         }
     }
@@ -113,17 +125,16 @@ fn places_do_not_depend_on_triangles() {
 #[test]
 fn places_of_a_piece_are_those_of_the_whole() {
     let mut num_inside = 0;
-    for (name, mesh) in shapes() {
-        let host = sharp(&mesh);
+    for Whole { name, mesh, sharp } in &*WHOLES {
         let size = diagonal(&mesh.positions);
         for seed in 0..2 {
-            let piece = crop(&mesh, 0.5, seed);
+            let piece = crop(mesh, 0.5, seed);
             let all = found(&piece, size);
             let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
             let kept: BTreeSet<[u64; 3]> = piece.positions.iter().map(bits).collect();
             let positions = mesh.positions.iter();
             let lost: Vec<&DVec3> = positions.filter(|p| !kept.contains(&bits(p))).collect();
-            for place in &host {
+            for place in sharp {
                 // A vertex that was lost took its triangles along, which reach as far as their sides.
                 let support = SUPPORT * 1.12 * place.width + 0.06 * size;
                 let is_inside = |p: &&DVec3| p.distance(place.point) > support;
@@ -141,11 +152,11 @@ fn places_of_a_piece_are_those_of_the_whole() {
 
 #[test]
 fn places_of_a_mirrored_copy_are_mirrored() {
-    let mesh = shapes::low_poly();
-    let mirrored = mirror(&mesh);
+    let Whole { mesh, sharp, .. } = &WHOLES[0];
+    let mirrored = mirror(mesh);
     let all = found(&mirrored, diagonal(&mesh.positions));
-    let affine = Affine::of(&mesh, &mirrored);
-    for place in sharp(&mesh) {
+    let affine = Affine::of(mesh, &mirrored);
+    for place in sharp {
         let kind = (place.invariant, place.is_high);
         let miss = miss(&all, kind, affine.at(place.point), place.width);
         assert!(miss < 0.03, "{place:?} misses by {miss}");
@@ -154,14 +165,14 @@ fn places_of_a_mirrored_copy_are_mirrored() {
 
 #[test]
 fn places_turn_with_their_model() {
-    let mesh = shapes::low_poly();
-    let moved = similarity(&mesh, 7);
-    let affine = Affine::of(&mesh, &moved);
+    let Whole { mesh, sharp, .. } = &WHOLES[0];
+    let moved = similarity(mesh, 7);
+    let affine = Affine::of(mesh, &moved);
     let scale = affine.1.x_axis.length();
     let size = diagonal(&mesh.positions) * scale;
     let all = found(&moved, size);
     let mut num_compared = 0;
-    for place in sharp(&mesh) {
+    for place in sharp {
         let at = affine.at(place.point);
         let same = all.iter().find(|p| {
             p.invariant == place.invariant

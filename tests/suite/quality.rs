@@ -1,5 +1,6 @@
 //! What an attack costs.
 
+use crate::portable_test;
 use crate::support::fixtures::asteroid;
 use meshmark::internals::attack::{
     bend, crop, into_scene, midpoint, mirror, noise, reorder, similarity, simplify, smooth, soup,
@@ -7,7 +8,6 @@ use meshmark::internals::attack::{
 };
 use meshmark::internals::geometry::{Distortion, Quality, diagonal};
 use meshmark::internals::mesh::{Mesh, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// RMS, Hausdorff and MSDM.
 fn between(reference: &Mesh, attacked: &Mesh) -> [f64; 3] {
@@ -15,7 +15,7 @@ fn between(reference: &Mesh, attacked: &Mesh) -> [f64; 3] {
     [quality.rms_rel, quality.hausdorff_rel, quality.msdm].map(Option::unwrap)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_of_the_same_is_perfect() {
     for mesh in [asteroid(), shapes::terrain(30), shapes::seven_shapes()] {
         // By the nearest points, where vertices do not correspond.
@@ -29,7 +29,7 @@ fn quality_of_the_same_is_perfect() {
     assert_eq!(nothing.msdm, None);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_falls_with_noise() {
     let mesh = shapes::torus_knot(160, 24);
     let mut last = [0.0; 3];
@@ -53,7 +53,7 @@ fn quality_falls_with_noise() {
 }
 
 /// A plane that rises: the distance is known.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_measures_distances() {
     let terrain = shapes::terrain(20);
     let plane = |height: f64, cells| {
@@ -81,7 +81,7 @@ fn quality_measures_distances() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_does_not_mind_where_the_copy_is() {
     let mesh = asteroid();
     let noisy = noise(&mesh, 0.001, 3);
@@ -98,7 +98,7 @@ fn quality_does_not_mind_where_the_copy_is() {
 }
 
 /// Eyes mind noise more than a bulge.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_tells_noise_from_a_smooth_warp() {
     for mesh in [asteroid(), shapes::torus_knot(160, 24), shapes::terrain(50)] {
         let noisy = noise(&mesh, 0.003, 5);
@@ -109,7 +109,7 @@ fn quality_tells_noise_from_a_smooth_warp() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn quality_compares_other_triangles() {
     let mesh = shapes::torus_knot(160, 24);
     let msdm = |copy: &Mesh| between(&mesh, copy)[2];

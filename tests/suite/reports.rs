@@ -1,5 +1,6 @@
 //! What reports say, and what they may not: below "found" nothing that follows the key but the verdict.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, key, payload};
 use meshmark::internals::carrier::{Measurement, ring};
 use meshmark::internals::detection::LN_P_FOUND;
@@ -9,7 +10,6 @@ use meshmark::{
     extract, extract_many, measure, verify,
 };
 use serde_json::{Value, to_value};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// Bytes of a stored ring (docs/FORMAT.md).
 const RING_BYTES: usize = 26;
@@ -90,7 +90,7 @@ fn hold_reports(num_keys: u8) {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn reports_below_found_do_not_follow_the_key() {
     hold_reports(4);
 }
@@ -101,7 +101,7 @@ fn reports_below_found_do_not_follow_any_of_twenty_keys() {
     hold_reports(20);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn reports_have_details_where_found_or_asked_for() {
     let evidence = measured(&ringed());
     let found = to_value(extract(&evidence, &key(1))).unwrap();
@@ -117,7 +117,7 @@ fn reports_have_details_where_found_or_asked_for() {
 }
 
 /// A payload is said where chance is excluded, the guess and the choice between carriers charged; before that, only that it is another.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn another_payload_is_named_at_one_in_a_billion() {
     let rings = blurred();
     let [mut unnamed, mut named] = [0; 2];
@@ -144,7 +144,7 @@ fn another_payload_is_named_at_one_in_a_billion() {
 }
 
 /// Tag and number come with "found", by whatever carrier, and never before: not in the ln 2 that one carrier of two owes either.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn payloads_are_told_only_where_found() {
     let rings = blurred();
     for evidence in parts(&rings, 2) {
@@ -158,7 +158,7 @@ fn payloads_are_told_only_where_found() {
 }
 
 /// Whether there is enough to tell depends on the suspect alone: a verdict that followed the key would say what the key owns.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn cannot_check_is_said_to_every_key_or_to_none() {
     let rings = measured(&to_glb(&asteroid()))
         .measurement(Carrier::Ring)
@@ -176,7 +176,7 @@ fn cannot_check_is_said_to_every_key_or_to_none() {
     assert_eq!(verdicts.last(), Some(&Verdict::None));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn many_keys_are_charged_in_all_that_is_said() {
     let rings = measured(&ringed()).measurement(Carrier::Ring).to_bytes();
     let many = |evidence: &Evidence, num: u8| {

@@ -1,5 +1,6 @@
 //! The RING carrier.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, key, strong};
 use glam::{DMat3, DVec3};
 use meshmark::internals::attack::{crop, reorder, similarity};
@@ -9,7 +10,6 @@ use meshmark::internals::code::{Codeword, Symbol};
 use meshmark::internals::detection::Statistic;
 use meshmark::internals::mesh::{Admissible, Mesh, Orbit, shapes};
 use meshmark::internals::progress::ignore;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x123_4567_89ab_cdef;
 
@@ -61,7 +61,7 @@ fn best(mesh: &Mesh, reader: u8) -> f64 {
         .fold(0.0, f64::min)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_marks_a_mesh_within_the_limit() {
     let asteroid = asteroid();
     let displacement = marked(&asteroid, &Admissible::default());
@@ -90,7 +90,7 @@ fn ring_marks_a_mesh_within_the_limit() {
 }
 
 /// The statistic itself does not change, so neither does any verdict.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_reading_does_not_depend_on_pose_or_order() {
     let asteroid = asteroid();
     let result = displaced(&asteroid, &marked(&asteroid, &Admissible::default()));
@@ -108,7 +108,7 @@ fn ring_reading_does_not_depend_on_pose_or_order() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_mark_stays_in_every_part() {
     let asteroid = asteroid();
     let result = displaced(&asteroid, &marked(&asteroid, &Admissible::default()));
@@ -116,7 +116,7 @@ fn ring_mark_stays_in_every_part() {
     assert!(half < -60.0, "{half}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_turned_over_faces_do_not_matter() {
     let asteroid = asteroid();
     let mut result = displaced(&asteroid, &marked(&asteroid, &Admissible::default()));
@@ -129,7 +129,7 @@ fn ring_turned_over_faces_do_not_matter() {
     assert!((best(&result, 1) / plain - 1.0).abs() < 1e-6);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_a_key_owns_a_quarter_of_the_addresses() {
     let measurement = Measurement::new(&asteroid());
     let (mut owned, mut all) = (0, 0);
@@ -142,7 +142,7 @@ fn ring_a_key_owns_a_quarter_of_the_addresses() {
     assert!((0.23..0.27).contains(&share), "{share}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_weights_do_not_depend_on_the_key() {
     let measurement = Measurement::new(&asteroid());
     for hypothesis in measurement.read(&key(1)).hypotheses {
@@ -167,7 +167,7 @@ fn ring_weights_do_not_depend_on_the_key() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_measurement_is_its_bytes() {
     let measurement = Measurement::new(&shapes::terrain(20));
     let bytes = measurement.to_bytes();
@@ -182,7 +182,7 @@ fn ring_measurement_is_its_bytes() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
     let ring = |i: u32, j: u32| {
         let (u, v) = (
@@ -226,7 +226,7 @@ fn ring_refuses_a_regular_mesh_and_says_what_is_missing() {
 }
 
 /// Two copies of one mesh, one turned and larger, moved by one displacement.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_instances_move_as_one() {
     let one = shapes::torus_knot(50, 16);
     let num = one.positions.len() as u32;
@@ -252,7 +252,7 @@ fn ring_instances_move_as_one() {
     assert!(best(&displaced(&both, &displacement), 1) < -80.0);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_fixed_vertices_stay() {
     let asteroid = asteroid();
     let fixed: Vec<u32> = (0..400).collect();
@@ -268,7 +268,7 @@ fn ring_fixed_vertices_stay() {
 }
 
 /// Rings that share an address would agree with each other, for everybody to see.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ring_leaves_no_trace() {
     let hosts = [
         ("asteroid", asteroid()),

@@ -1,5 +1,6 @@
 //! What survives natively and in wasm on a regular shape. Every attack's floors are in `floors.rs`.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, marked};
 use glam::DVec3;
 use meshmark::internals::attack::{quantize, reorder, similarity};
@@ -8,7 +9,6 @@ use meshmark::internals::mesh::Mesh;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{Evidence, Verdict, extract};
 use std::f64::consts::TAU;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// The marked copy of a mesh, as it comes out of its file.
 fn marked_mesh(mesh: &Mesh) -> Mesh {
@@ -19,7 +19,7 @@ fn marked_mesh(mesh: &Mesh) -> Mesh {
 }
 
 /// A regular mesh: four copies of a smooth, regular tube of different sizes, which only their places tell apart.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn robustness_of_regular_shapes() {
     let mut mesh = Mesh::default();
     for (copy, size) in [1.0, 0.8, 0.65, 0.9].into_iter().enumerate() {

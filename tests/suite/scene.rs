@@ -1,5 +1,6 @@
 //! From documents to meshes and back.
 
+use crate::portable_test;
 use crate::support::fixtures::gallery;
 use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
@@ -8,7 +9,6 @@ use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::scene::{
     Count, MAX_ELEMENTS, MAX_PARTS, MAX_TRIANGLES, Scene, SceneError, to_glb,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn read(model: &Built) -> Document {
     Document::read(&model.bytes, &model.files).unwrap()
@@ -32,7 +32,7 @@ fn shown_as(layout: Layout, points: &[[f64; 3]], indices: &[u32], nodes: &[&str]
 
 const TRIANGLE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_copies_at_a_seam_are_one_vertex() {
     let points = [
         TRIANGLE[0],
@@ -60,7 +60,7 @@ fn scene_copies_at_a_seam_are_one_vertex() {
     assert_eq!(moved[2], moved[5]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_places_nodes_in_world_space() {
     let mut builder = GltfBuilder::new(Packing::DataUri);
     let position = builder.positions(0, Layout::F32, &TRIANGLE);
@@ -83,7 +83,7 @@ fn scene_places_nodes_in_world_space() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_mirrored_nodes_keep_their_outside() {
     let plain = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[""])).unwrap();
     let mirrored = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[r#","scale":[-1,1,1]"#])).unwrap();
@@ -94,7 +94,7 @@ fn scene_mirrored_nodes_keep_their_outside() {
     assert_eq!(normal(&plain.mesh), normal(&mirrored.mesh));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_instances_share_one_displacement() {
     let mut document = shown(
         &TRIANGLE,
@@ -122,7 +122,7 @@ fn scene_instances_share_one_displacement() {
 }
 
 /// A half and its mirror image touch along x = 0: vertices there may not leave the plane, and are fixed.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_instances_that_contradict_each_other_are_fixed() {
     let document = shown(&TRIANGLE, &[0, 1, 2], &["", r#","scale":[-1,1,1]"#]);
     let scene = Scene::gather(&document).unwrap();
@@ -131,13 +131,13 @@ fn scene_instances_that_contradict_each_other_are_fixed() {
     assert_eq!(scene.admissible.orbits.len(), 1);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_flattened_node_cannot_be_written() {
     let scene = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], &[r#","scale":[1,1,0]"#])).unwrap();
     assert_eq!(scene.admissible.fixed, [0, 1, 2]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_two_accessors_of_the_same_bytes_are_the_same_vertices() {
     let mut builder = GltfBuilder::new(Packing::Glb);
     let position = builder.positions(0, Layout::F32, &TRIANGLE);
@@ -162,7 +162,7 @@ fn scene_two_accessors_of_the_same_bytes_are_the_same_vertices() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_degenerate_triangles_and_unused_vertices_are_no_part_of_it() {
     let points = [
         TRIANGLE[0],
@@ -184,7 +184,7 @@ const UNBOUNDED: Layout = Layout {
     ..Layout::F32
 };
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_numbers_that_are_none_matter_where_a_triangle_looks() {
     for (value, code) in [(f64::NAN, 0x7fc0_0000_u32), (f64::INFINITY, 0x7f80_0000)] {
         let points = [TRIANGLE[0], TRIANGLE[1], TRIANGLE[2], [7.0, value, 7.0]];
@@ -230,7 +230,7 @@ fn with_nodes(nodes: &[&str], scenes: &str) -> GltfBuilder {
     builder
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_shows_a_shared_node_once_each_way() {
     let nodes = [
         r#"{"mesh":0}"#,
@@ -259,7 +259,7 @@ fn scene_shows_a_shared_node_once_each_way() {
 }
 
 /// Some exporters list every node of a scene in it, under parents that move nothing.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_shows_a_child_that_it_lists_too_once_at_each_place() {
     let nodes = [r#"{"mesh":0,"translation":[5,0,0]}"#, r#"{"children":[0]}"#];
     assert_eq!(
@@ -272,7 +272,7 @@ fn scene_shows_a_child_that_it_lists_too_once_at_each_place() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_of_more_ways_than_nodes_may_be_is_refused() {
     let mut nodes = vec![r#"{"mesh":0}"#.to_owned()];
     for level in 0..40 {
@@ -319,7 +319,7 @@ fn instanced(attributes: &[(&str, &str, &[f32])]) -> GltfBuilder {
     builder
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_counts_instances() {
     let moved: &[f32] = &[10.0, 0.0, 0.0, 20.0, 0.0, 0.0, 10.0, 0.0, 0.0];
     let builder = instanced(&[("TRANSLATION", "VEC3", moved)]);
@@ -348,7 +348,7 @@ fn scene_counts_instances() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_with_wrong_instances_is_refused() {
     let two: &[f32] = &[1.0; 6];
     for attributes in [
@@ -366,7 +366,7 @@ fn scene_with_wrong_instances_is_refused() {
     assert_eq!(error.code(), "document.too-large");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_without_triangles_is_refused() {
     for nodes in [&[][..], &[r#","scale":[0,0,0]"#][..]] {
         let error = Scene::gather(&shown(&TRIANGLE, &[0, 1, 2], nodes)).unwrap_err();
@@ -374,7 +374,7 @@ fn scene_without_triangles_is_refused() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_overflowing_transform_is_refused() {
     let error = Scene::gather(&shown(
         &TRIANGLE,
@@ -387,7 +387,7 @@ fn scene_overflowing_transform_is_refused() {
 }
 
 /// A small file may show the same bytes so often that the scene would fill the memory.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_too_large_to_hold_is_refused() {
     let points = vec![[0.5; 3]; 60_000];
     let mut builder = GltfBuilder::new(Packing::Glb);
@@ -428,7 +428,7 @@ fn amplified(num_primitives: usize, num_indices: usize) -> GltfBuilder {
     builder
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_with_too_many_triangles_is_refused() {
     let times = MAX_TRIANGLES as usize / 10_000 + 1;
     let mut by_nodes = amplified(1, 30_000);
@@ -442,7 +442,7 @@ fn scene_with_too_many_triangles_is_refused() {
     assert_too_large(&by_both, "triangles");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_with_too_many_parts_is_refused() {
     let mut builder = amplified(1024, 3);
     builder.nodes = vec![r#"{"mesh":0}"#.to_owned(); MAX_PARTS as usize / 1024 + 1];
@@ -450,7 +450,7 @@ fn scene_with_too_many_parts_is_refused() {
 }
 
 /// What is stored nowhere is allowed once, not once for each that shows it.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_with_too_much_that_is_stored_nowhere_is_refused() {
     let count = MAX_UNBACKED / 2;
     let positions = format!(r#"{{"componentType":5126,"count":{count},"type":"VEC3"}}"#);
@@ -480,7 +480,7 @@ fn scene_with_too_much_that_is_stored_nowhere_is_refused() {
 }
 
 /// A sparse accessor over nothing is legal, and what it lists is stored.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_of_sparse_positions_over_nothing_is_gathered() {
     let points = [[0.0; 3], TRIANGLE[1], TRIANGLE[2]];
     let mut builder = GltfBuilder::new(Packing::Glb);
@@ -494,7 +494,7 @@ fn scene_of_sparse_positions_over_nothing_is_gathered() {
     assert_eq!(scene.admissible.fixed, [0], "what is stored nowhere stays");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_counts_are_those_of_the_scene() {
     let document = read(&gallery(Packing::Glb));
     let nodes = document.nodes().iter();
@@ -525,7 +525,7 @@ fn scene_counts_are_those_of_the_scene() {
     assert!(parts > 0 && elements > parts && triangles > parts);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_counts_are_accepted_up_to_their_limits() {
     let most = Count {
         parts: MAX_PARTS,
@@ -561,7 +561,7 @@ fn scene_counts_are_accepted_up_to_their_limits() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_gallery_is_gathered_whole() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
         let scene = Scene::gather(&read(&gallery(packing))).unwrap();
@@ -577,7 +577,7 @@ fn scene_gallery_is_gathered_whole() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn scene_plain_glb_comes_back() {
     let knot = shapes::torus_knot(12, 6);
     let document = Document::read(&to_glb(&knot), &Default::default()).unwrap();

@@ -1,5 +1,6 @@
 //! Vertices that a person sees as one: for the embedder, who moves them together, and for the detector.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, payload};
 use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
 use glam::DVec3;
@@ -9,7 +10,6 @@ use meshmark::internals::geometry::seams;
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Model, Strength, Verdict, detect, embed};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn gathered(built: &Built) -> Scene {
     Scene::gather(&Document::read(&built.bytes, &built.files).unwrap()).unwrap()
@@ -50,7 +50,7 @@ fn square(x: f64) -> Mesh {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn seams_within_a_little_are_closed_and_others_stay_open() {
     let diagonal = 5f64.sqrt();
     for (gap, is_one) in [(1e-7, true), (1e-4, true), (1.9e-4, true), (3e-4, false)] {
@@ -78,7 +78,7 @@ fn seams_within_a_little_are_closed_and_others_stay_open() {
 }
 
 /// A plate stays a plate, however thin, and a fine part of a large scene keeps its vertices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn seams_lose_no_triangle() {
     let thin = shapes::cuboid(DVec3::new(1.0, 1.0, 1e-4), [4, 4, 1]);
     assert_eq!(seams(&thin).merged, []);
@@ -103,7 +103,7 @@ fn seams_lose_no_triangle() {
 }
 
 /// A fin that grows out of a surface and comes back to it ends in the midst of it, where no vertex has an edge with one triangle.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn seams_close_where_a_fin_ends_in_the_midst_of_its_own_surface() {
     for gap in [1e-4, 1e-7] {
         let across = [0.0, 1.0, 2.0].map(|x| (x, 0.0));
@@ -121,7 +121,7 @@ fn seams_close_where_a_fin_ends_in_the_midst_of_its_own_surface() {
 }
 
 /// Two sides of a leaf, as two sheets close to each other, stay two; where they are parted by rounding alone they are one.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn seams_lay_no_sheet_upon_another() {
     for (gap, num) in [(1e-7, 9), (1e-4, 0)] {
         let [mut front, mut back] = [0, 1].map(|_| shapes::terrain(2));
@@ -136,7 +136,7 @@ fn seams_lay_no_sheet_upon_another() {
 }
 
 /// A codec gives each primitive a grid of its own: copies of a vertex on both sides of a seam part.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn seams_on_grids_of_their_own_keep_the_mark() {
     let pieces = |mesh: &Mesh| -> Vec<Mesh> {
         // By material, each piece with its own copies.
@@ -182,7 +182,7 @@ fn seams_on_grids_of_their_own_keep_the_mark() {
 }
 
 /// Lines that lie on the surface, on its vertices and between them, move with it; what lies elsewhere stays.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn points_and_lines_move_with_the_surface_below_them() {
     let rock = shapes::asteroid(30, 40);
     let middle = |&[a, b, _]: &[u32; 3]| {

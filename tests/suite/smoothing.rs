@@ -1,5 +1,6 @@
 //! The smoothing methods of the seed paper, by its equations and counts.
 
+use crate::portable_test;
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::internals::attack::{
@@ -8,7 +9,6 @@ use meshmark::internals::attack::{
 };
 use meshmark::internals::geometry::{Quadrature, dihedrals, face_areas};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A spindle of valence 6 whose rim is neither flat nor regular: its tip alone may move.
 fn tent() -> Mesh {
@@ -40,7 +40,7 @@ fn fit_error(tent: &Mesh, tip: DVec3) -> f64 {
     terms.sum()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_mean_filter_solves_equation_4() {
     let tent = tent();
     let filtered = mean_filter(&tent, 1);
@@ -56,7 +56,7 @@ fn smoothing_mean_filter_solves_equation_4() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_mean_filter_keeps_what_is_flat() {
     let mut plane = shapes::terrain(12);
     plane
@@ -86,7 +86,7 @@ fn volume(mesh: &Mesh) -> f64 {
     parts.sum()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_methods_smooth() {
     let clean = asteroid();
     let noisy = noise(&clean, 0.004, 2);
@@ -117,7 +117,7 @@ fn smoothing_methods_smooth() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_holds_borders_and_accepts_anything() {
     let terrain = shapes::terrain(16);
     let methods: [fn(&Mesh) -> Mesh; 3] = [
@@ -142,7 +142,7 @@ fn smoothing_holds_borders_and_accepts_anything() {
 }
 
 /// The coordinates of a unit sphere are eigenfunctions of its Laplacian, with the eigenvalue 2.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_mean_curvature_flow_shrinks_a_sphere_as_it_must() {
     let sphere = shapes::icosphere(4);
     let edge = sphere.mean_edge();
@@ -159,7 +159,7 @@ fn smoothing_mean_curvature_flow_shrinks_a_sphere_as_it_must() {
 }
 
 /// An octahedron, by hand: face points at thirds, edge points at (1 + 1 + 2/3) / 4, vertices at (F + 2 R + (n - 3) P) / n.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_mesh_smooth_is_catmull_and_clark() {
     let octahedron = Mesh {
         positions: [DVec3::X, DVec3::Y, DVec3::Z]
@@ -202,7 +202,7 @@ fn smoothing_mesh_smooth_is_catmull_and_clark() {
 }
 
 /// Two closed surfaces of 66922 faces, brought to the paper's 11732 and smoothed twice: 5870, 35200 and 140788 vertices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_has_the_counts_of_the_paper() {
     let mut whole = shapes::asteroid(150, 150);
     let moon = shapes::asteroid(97, 113);
@@ -243,7 +243,7 @@ fn sphere_error(mesh: &Mesh) -> f64 {
 
 /// An icosphere is close to the best that so many triangles can do with their corners on the sphere; simplification, which may
 /// lift them off it, comes to a third of its error.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_simplification_places_its_faces_well() {
     let simple = simplify_to(&shapes::icosphere(5), 1280);
     assert_eq!(simple.triangles.len(), 1280);
@@ -251,7 +251,7 @@ fn smoothing_simplification_places_its_faces_well() {
     assert!(error < 0.4 * inscribed, "{error} {inscribed}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn smoothing_optimization_merges_what_is_flat_first() {
     let mut plane = shapes::terrain(20);
     plane.positions.iter_mut().for_each(|p| p.z = 0.0);

@@ -1,5 +1,6 @@
 //! The SOLID carrier.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, strong};
 use glam::DVec3;
 use meshmark::internals::attack::{
@@ -12,7 +13,6 @@ use meshmark::internals::detection::Statistic;
 use meshmark::internals::geometry::{Distortion, Pose, diagonal};
 use meshmark::internals::mesh::{Admissible, Mesh, shapes};
 use meshmark::internals::progress::ignore;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const MESSAGE: u64 = 0x0f1_2345_6789_abcd;
 
@@ -72,7 +72,7 @@ fn exponent(mesh: &Mesh, reader: u8) -> f64 {
 }
 
 /// A scale along one axis of the scene, and fewer triangles: nobody sees either.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_stretches_are_undone() {
     let result = marked(&rock(), 1);
     for scale in [
@@ -87,7 +87,7 @@ fn solid_stretches_are_undone() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_marks_a_mesh_within_the_limit() {
     let (host, result) = (rock(), marked(&rock(), 1));
     let distortion = Distortion::between(&host.positions, &result.positions);
@@ -110,7 +110,7 @@ fn solid_marks_a_mesh_within_the_limit() {
 
 /// A detector gathers the surface in cells for the finest pitch that it tries, here finer than the one that is written: sheets
 /// that share a cell in the one and not in the other show other fluxes.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_writes_what_a_detector_sees_of_thin_sheets() {
     let mut finned = shapes::cuboid(DVec3::new(1.0, 1.6, 2.4), [8, 13, 20]);
     for place in [0.7, 0.76, 0.82] {
@@ -126,7 +126,7 @@ fn solid_writes_what_a_detector_sees_of_thin_sheets() {
 }
 
 /// A block, one end of which is rough.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_hides_in_rough_surfaces() {
     let mut block = shapes::cuboid(DVec3::new(1.3, 1.0, 0.75), [52, 40, 30]);
     let rough = noise(&block, 0.004, 3);
@@ -160,7 +160,7 @@ fn solid_hides_in_rough_surfaces() {
 }
 
 /// Each attack with the share of the exponent that has to be left.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_stays_in_the_shape() {
     let result = marked(&rock(), 1);
     let whole = exponent(&result, 1);
@@ -195,14 +195,14 @@ fn solid_stays_in_the_shape() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_undoes_smoothing_that_held_boundaries() {
     let open = crop(&shapes::asteroid(60, 90), 0.3, 3);
     assert_is_undone(&open, smooth_inside, [9, 27, 45]);
 }
 
 /// There it moves vertices farther than a step is wide, and takes a third of the area.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_undoes_smoothing_of_few_triangles() {
     assert_is_undone(&shapes::low_poly(), smooth, [7, 14, 28]);
 }
@@ -217,7 +217,7 @@ fn assert_is_undone(host: &Mesh, smooth: fn(&Mesh, f64, u32) -> Mesh, numbers: [
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_marks_of_two_keys_stay_beside_each_other() {
     let twice = marked(&marked(&rock(), 1), 2);
     assert!(
@@ -228,7 +228,7 @@ fn solid_marks_of_two_keys_stay_beside_each_other() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_measurement_is_its_bytes() {
     let measurement = Measurement::new(&shapes::torus_knot(100, 24));
     let bytes = measurement.to_bytes();
@@ -240,7 +240,7 @@ fn solid_measurement_is_its_bytes() {
     assert!(bytes.len() < 2_000_000);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_refuses_shapes_that_cannot_hold_it() {
     let sheet = Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
@@ -267,7 +267,7 @@ fn solid_refuses_shapes_that_cannot_hold_it() {
 
 /// What no surface gives is refused by name. A measurement as bytes: origin and axes in 4, pitches in 1, spreads and the scene's axes in 7
 /// times 4, units of areas and of moments in 4 each, the number of clusters in 4; then the first cluster's cell in 9, its centre in 3, area vector in 6, moment in 2, area in 1.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_refuses_forged_measurements() {
     const PITCHES: usize = 4;
     const SPREADS: usize = 5;
@@ -367,7 +367,7 @@ fn solid_refuses_forged_measurements() {
 }
 
 /// A long rod has little area in its own frame: it is marked at the finest pitch.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn solid_marks_long_rods() {
     let rock = shapes::asteroid(24, 36);
     let drawn = |thick: f64| {

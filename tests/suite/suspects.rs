@@ -1,10 +1,10 @@
 //! Suspects that are no glTF: positions and triangles.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, marked};
 use meshmark::internals::document::Document;
 use meshmark::{Files, Surface, Verdict, demo_model, detect, extract, measure, verify};
 use std::ops::ControlFlow;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
@@ -27,7 +27,7 @@ fn soup((positions, triangles): &Triangles) -> Triangles {
     (corners, triangles)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn suspects_in_any_form_are_measured_as_the_model_is() {
     let (model, (positions, triangles)) = copy();
     let surface = || Surface::new(&positions, &triangles);
@@ -48,7 +48,7 @@ fn suspects_in_any_form_are_measured_as_the_model_is() {
 }
 
 /// What writing in another format does: Z up, millimetres, numbers of six digits, triangles with vertices of their own.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn suspects_from_other_formats_are_found() {
     let (_, copy) = copy();
     let six_digits = |number: f64| -> f64 { format!("{number:.5e}").parse().unwrap() };
@@ -63,7 +63,7 @@ fn suspects_from_other_formats_are_found() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn suspects_that_are_no_surface_are_refused() {
     let positions = [
         [0.0; 3],
@@ -83,7 +83,7 @@ fn suspects_that_are_no_surface_are_refused() {
     assert_eq!(refused(&[]), Some("scene.no-triangles"));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn suspects_are_watched_in_any_form() {
     let mut stop = |_, _| ControlFlow::Break(());
     let surface = Surface::new(&[[0.0; 3]; 3], &[[0, 1, 2]]).with_progress(&mut stop);

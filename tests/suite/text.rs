@@ -1,10 +1,10 @@
 //! Codes of texts: blocks and check bits.
 
+use crate::portable_test;
 use crate::support::fixtures::{key, random};
 use meshmark::internals::code::{Block, TextCheck, TextError};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ldpc_corrects_noise_and_erasures() {
     for block in Block::ALL {
         let message: Vec<u8> = (0..block.message_bytes() as u8)
@@ -36,7 +36,7 @@ fn ldpc_corrects_noise_and_erasures() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn ldpc_says_when_it_found_nothing() {
     let found = |seed: u64| {
         let noise = |place| 2.0 * random(500 * seed + place) - 1.0;
@@ -48,7 +48,7 @@ fn ldpc_says_when_it_found_nothing() {
     assert_eq!(decoded.message.len(), 8);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn text_check_knows_its_key_and_its_text() {
     let check = TextCheck::new(&key(1));
     for text in ["a", "Grüße", "© Ada Lovelace 1843, London"] {
@@ -71,7 +71,7 @@ fn text_check_knows_its_key_and_its_text() {
     assert_eq!(check.text(&[]), None);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn text_that_does_not_fit_is_refused() {
     let check = TextCheck::new(&key(1));
     assert_eq!(Block::for_text(""), Err(TextError::Empty));

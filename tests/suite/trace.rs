@@ -1,5 +1,6 @@
 //! Tracing: who is named, and that nobody else is.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, key};
 use glam::DVec3;
 use meshmark::internals::attack::{crop, quantize, similarity, simplify};
@@ -12,7 +13,6 @@ use meshmark::{
     Verdict, demo_model, measure, prepare, record, trace, trace_evidence, trace_overlaid,
     trace_overlaid_with_record,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn plan() -> Plan {
     prepare(&demo_model(), &key(72), &EmbedOptions::default())
@@ -55,7 +55,7 @@ fn named(tracing: &Tracing) -> Vec<u64> {
     named
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn who_leaks_a_copy_is_named_and_nobody_else() {
     let plan = plan();
     let ledger: Vec<u64> = (1..=1000).collect();
@@ -81,7 +81,7 @@ fn who_leaks_a_copy_is_named_and_nobody_else() {
     assert_eq!(named(&tracing), [17]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn buyers_who_mix_their_copies_are_named() {
     let plan = plan();
     let ledger: Vec<u64> = (1..=1000).collect();
@@ -113,7 +113,7 @@ fn piece_of(mesh: &Mesh) -> Vec<u8> {
     to_glb(&similarity(&piece, 4))
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn with_the_original_or_the_record_who_leaks_a_piece_is_named() {
     let (original, plan, record) = sold();
     let (key, ledger) = (key(72), (1..=1000).collect::<Vec<u64>>());
@@ -140,7 +140,7 @@ fn with_the_original_or_the_record_who_leaks_a_piece_is_named() {
     assert_eq!(tracing.traced, Traced::Nobody);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn with_the_original_who_average_and_cut_are_named() {
     let (original, plan, _) = sold();
     let (key, ledger) = (key(72), (1..=1000).collect::<Vec<u64>>());
@@ -150,7 +150,7 @@ fn with_the_original_who_average_and_cut_are_named() {
     assert_eq!(named(&tracing), [3, 8]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn with_the_original_nobody_is_named_in_what_is_no_copy() {
     let (original, plan, record) = sold();
     let ledger: Vec<u64> = (1..=1000).collect();
@@ -168,7 +168,7 @@ fn with_the_original_nobody_is_named_in_what_is_no_copy() {
     assert!(matches!(refused, Err(Error::Record(_))));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn numbers_that_are_none_are_refused_and_repetitions_cost_nothing() {
     let model = demo_model();
     assert!(matches!(
@@ -182,7 +182,7 @@ fn numbers_that_are_none_are_refused_and_repetitions_cost_nothing() {
 }
 
 /// The bound against what chance gives: of many messages that had no part, no larger share is below a probability than that.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_bound_holds_for_messages_that_had_no_part() {
     let key = key(9);
     let (check, prf) = (Checked::new(&key), key.prf("test"));

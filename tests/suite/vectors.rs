@@ -1,6 +1,7 @@
 //! docs/VECTORS.md: what another implementation is checked against. Each line is computed here, and has to be there.
 
 use crate::golden::{HOST_RINGS, HOST_SECTORS};
+use crate::portable_test;
 use crate::support::fixtures::{key, payload};
 use meshmark::internals::carrier::{ring, solid};
 use meshmark::internals::code::{Checked, Codeword, Numbers, Symbol};
@@ -11,7 +12,6 @@ use meshmark::internals::mesh::shapes;
 use meshmark::internals::progress::ignore;
 use meshmark::internals::scene::{Scene, to_glb};
 use meshmark::{EmbedOptions, Files, Key, Strength, embed};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const VECTORS: &str = include_str!("../../docs/VECTORS.md");
 
@@ -45,7 +45,7 @@ fn said(symbol: Symbol) -> String {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn vectors_of_keys() {
     let mut lines = Vec::new();
     let words = Key::from_normalized("Ada", "correct horse battery staple").unwrap();
@@ -70,7 +70,7 @@ fn vectors_of_keys() {
     are_there(&lines);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn vectors_of_messages() {
     let mut lines = Vec::new();
     let message = Checked::new(&key(1)).message(payload());
@@ -96,7 +96,7 @@ fn vectors_of_messages() {
     are_there(&lines);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn vectors_of_a_mark() {
     let mut lines = Vec::new();
     let host = to_glb(&shapes::asteroid(HOST_RINGS, HOST_SECTORS));

@@ -1,5 +1,6 @@
 //! The pipelines, from bytes to verdicts.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, gallery, key, marked, payload};
 use crate::support::gltf_builder::{Built, Packing};
 use glam::DVec3;
@@ -14,7 +15,6 @@ use meshmark::{
     Strength, Verdict, capacity, demo_model, embed, extract, inspect, measure, verify,
 };
 use std::ops::ControlFlow;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn measured(model: &[u8]) -> Evidence {
     measure(model).unwrap()
@@ -28,7 +28,7 @@ fn strong() -> EmbedOptions {
     EmbedOptions::default().with_strength(Strength::STRONG)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn watermark_is_found_by_its_key_and_no_other() {
     let marked = marked(&demo_model(), &key(1)).unwrap();
     let found = read(&marked.model, 1);
@@ -55,12 +55,12 @@ fn watermark_is_found_by_its_key_and_no_other() {
     assert!(other.sentence.contains("does not prove"));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn watermark_is_not_in_the_unmarked_model() {
     assert_eq!(read(&demo_model(), 1).verdict, Verdict::None);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn watermark_report_is_true() {
     let host = demo_model();
     let marked = marked(&host, &key(1)).unwrap();
@@ -76,7 +76,7 @@ fn watermark_report_is_true() {
     assert_eq!(report.marked_sha256, inspect(&marked.model).unwrap().sha256);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn watermark_marks_every_kind_of_document() {
     for packing in [Packing::Glb, Packing::DataUri, Packing::External] {
         let Built { bytes, files } = gallery(packing);
@@ -103,7 +103,7 @@ fn watermark_marks_every_kind_of_document() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn watermark_of_another_owner_leaves_the_first() {
     let first = marked(&demo_model(), &key(1)).unwrap();
     let options = EmbedOptions::default();
@@ -121,7 +121,7 @@ fn watermark_of_another_owner_leaves_the_first() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn verify_finds_the_expected_payload_and_names_another() {
     let evidence = measured(&marked(&demo_model(), &key(1)).unwrap().model);
     let found = verify(&evidence, &key(1), payload());
@@ -140,7 +140,7 @@ fn verify_finds_the_expected_payload_and_names_another() {
 }
 
 /// A small mesh: few enough symbols that decoding may fail, and neighbours in payload must not pass.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn verify_never_takes_one_payload_for_another() {
     let host = to_glb(&shapes::asteroid(20, 26));
     let model = embed(&host, payload(), &key(1), &strong()).unwrap().model;
@@ -160,7 +160,7 @@ const NOISES: [f64; 3] = [0.0012, 0.0014, 0.0016];
 
 /// A damaged mark, of which nothing is decoded any more: a neighbour in number shares two thirds of the symbols, and its bound alone
 /// would do.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn verify_names_no_neighbour_of_a_damaged_mark() {
     let host = simplify(&shapes::asteroid(70, 100), 0.5);
     let options = EmbedOptions::default().with_carriers([Carrier::Ring]);
@@ -189,7 +189,7 @@ fn verify_names_no_neighbour_of_a_damaged_mark() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn verdict_is_cannot_check_where_there_is_too_little() {
     let tiny = to_glb(&Mesh {
         positions: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0],
@@ -202,7 +202,7 @@ fn verdict_is_cannot_check_where_there_is_too_little() {
     assert_eq!(error.code(), "carrier.too-few-addresses");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn embed_returns_nothing_that_it_cannot_read() {
     let host = to_glb(&shapes::icosphere(2));
     let error = marked(&host, &key(1)).unwrap_err();
@@ -214,7 +214,7 @@ fn embed_returns_nothing_that_it_cannot_read() {
 }
 
 /// Advice was tried: a strength that is too small for any mark, where the strong one is not.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn refused_models_are_told_what_helps() {
     let options = EmbedOptions::default().with_strength(Strength::new(1e-5).unwrap());
     let host = to_glb(&shapes::asteroid(18, 24));
@@ -228,7 +228,7 @@ fn refused_models_are_told_what_helps() {
 }
 
 /// A model that cannot hold a payload holds a mark that says whose it is.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn small_models_hold_a_mark_without_a_payload() {
     let host = to_glb(&shapes::asteroid(7, 12));
     let Embedding { model, report, .. } = marked(&host, &key(1)).unwrap();
@@ -250,7 +250,7 @@ fn small_models_hold_a_mark_without_a_payload() {
 }
 
 /// A place on the globe in metres: 32-bit numbers there are 1 m apart.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn embed_says_that_numbers_are_too_coarse() {
     let mut mesh = asteroid();
     for position in &mut mesh.positions {
@@ -261,7 +261,7 @@ fn embed_says_that_numbers_are_too_coarse() {
     assert!(error.to_string().contains("origin"), "{error}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn embed_says_at_once_that_nothing_can_move() {
     let mut stages = Vec::new();
     let mut watch = |stage: Stage, _: f64| {
@@ -294,7 +294,7 @@ fn embed_says_at_once_that_nothing_can_move() {
     assert!(stages.iter().all(|&stage| stage == Stage::Read));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn embed_stops_when_asked_at_any_stage() {
     let model = to_glb(&asteroid());
     let mut stages = Vec::new();
@@ -348,7 +348,7 @@ fn embed_stops_when_asked_at_any_stage() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn options_out_of_range_are_refused() {
     for text in ["0", "-1", "0.02", "NaN", "loud", ""] {
         assert_eq!(
@@ -372,7 +372,7 @@ fn options_out_of_range_are_refused() {
 }
 
 /// Wrong keys against evidence of a marked and of an unmarked model: the tail of ln p inside its bound, none convicted.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn wrong_keys_find_nothing() {
     let host = to_glb(&asteroid());
     let marked = marked(&host, &key(255)).unwrap().model;
@@ -398,7 +398,7 @@ fn wrong_keys_find_nothing() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn inspect_describes_the_scene() {
     let Built { bytes, files } = gallery(Packing::External);
     let inspection = inspect(Model::new(&bytes).with_files(&files)).unwrap();

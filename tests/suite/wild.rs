@@ -1,5 +1,6 @@
 //! What each attack of the wild, and each flip of an edge, promises.
 
+use crate::portable_test;
 use crate::support::fixtures::asteroid;
 use glam::DVec3;
 use meshmark::internals::attack::{
@@ -9,7 +10,6 @@ use meshmark::internals::attack::{
 use meshmark::internals::geometry::{Surface, diagonal};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::scene::{Scene, to_glb};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn volume(mesh: &Mesh) -> f64 {
     let volumes = mesh.triangles.iter().map(|&t| {
@@ -43,7 +43,7 @@ fn num_not_delaunay(mesh: &Mesh) -> usize {
     over.count()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_delaunay_leaves_none_in_a_plane() {
     // The border stays a square.
     let mut plane = noise(&shapes::terrain(30), 0.02, 1);
@@ -56,7 +56,7 @@ fn attack_delaunay_leaves_none_in_a_plane() {
     assert_eq!(flipped, delaunay(&plane), "deterministic");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_delaunay_flips_what_is_flat_and_no_crease() {
     for (name, mesh) in [
         ("knot", shapes::torus_knot(160, 24)),
@@ -78,7 +78,7 @@ fn attack_delaunay_flips_what_is_flat_and_no_crease() {
     assert!((volume(&delaunay(&cube)) - 6.0).abs() < 1e-12);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_soup_and_split_keep_every_triangle() {
     let mesh = shapes::torus_knot(60, 20);
     let soup = soup(&mesh);
@@ -94,7 +94,7 @@ fn attack_soup_and_split_keep_every_triangle() {
 }
 
 /// What a soup's reader does first: the vertices are shared again.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_weld_undoes_a_soup() {
     let mesh = shapes::torus_knot(60, 20);
     let welded = weld(&soup(&mesh), 1e-9);
@@ -118,7 +118,7 @@ fn attack_weld_undoes_a_soup() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_exports_keep_the_shape() {
     let mesh = asteroid();
     let before = volume(&mesh);
@@ -149,7 +149,7 @@ fn attack_exports_keep_the_shape() {
     assert!((3e-6..6e-5).contains(&rms), "{rms:e}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_take_out_takes_the_largest_but_one() {
     let shapes = shapes::seven_shapes();
     let rest = take_out(&shapes);
@@ -175,7 +175,7 @@ fn attack_take_out_takes_the_largest_but_one() {
     assert_eq!(take_out(&asteroid()), asteroid());
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_into_scene_keeps_the_model_as_it_is() {
     let mesh = asteroid();
     for times in [2.0, 5.0] {
@@ -205,7 +205,7 @@ fn attack_into_scene_keeps_the_model_as_it_is() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_bend_turns_one_half() {
     let mesh = shapes::capsule(60, 40);
     let size = diagonal(&mesh.positions);
@@ -230,7 +230,7 @@ fn attack_bend_turns_one_half() {
 }
 
 /// Whatever is done, a reader takes what comes of it, and the same seed gives the same.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn attack_catalogue_gives_files_that_can_be_read() {
     let mesh = shapes::asteroid(10, 14);
     for attack in CATALOGUE {

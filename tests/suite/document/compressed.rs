@@ -1,12 +1,12 @@
 //! Compressed geometry: read as the plain document that it stands for, and never trusted.
 
+use crate::portable_test;
 use meshmark::internals::document::{Document, DocumentError, Files};
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::scene::Scene;
 use meshmark::{EmbedOptions, Payload, Verdict, detect, embed};
 use meshoptimizer_rs::codec::ExpMode;
 use serde_json::{Value, json};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::compress::{by_draco, by_meshopt, packed};
 use crate::support::fixtures::key;
@@ -37,7 +37,7 @@ fn mesh() -> Mesh {
     shapes::asteroid(20, 24)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_geometry_is_what_was_compressed() {
     let mesh = mesh();
     for (name, model, tolerance) in all(&mesh) {
@@ -91,7 +91,7 @@ fn without_places(mut json: Value) -> Value {
     json
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_documents_are_written_as_they_were() {
     for (name, model, tolerance) in all(&mesh()) {
         let mut document = Document::read(&model, &Files::new()).expect(name);
@@ -164,7 +164,7 @@ fn moved(model: &[u8]) -> (Document, Vec<&'static str>, Document) {
 }
 
 /// What follows the order of the vertices, and is not in the stream, stays with its vertices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_primitives_with_companions_keep_their_order() {
     let model = changed(|json, binary| {
         let (offset, count) = (binary.len(), mesh().positions.len());
@@ -188,7 +188,7 @@ fn compressed_primitives_with_companions_keep_their_order() {
 }
 
 /// What of a stream serves two primitives is not encoded: the copy is plain, and that is said.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_primitives_that_share_a_stream_are_written_plain() {
     let model = changed(|json, _| {
         let primitives = json["meshes"][0]["primitives"].as_array_mut();
@@ -203,7 +203,7 @@ fn compressed_primitives_that_share_a_stream_are_written_plain() {
 }
 
 /// A plain copy that goes with the streams, for readers without a decoder, holds what they hold.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_models_keep_their_plain_copy_true() {
     let name = "EXT_meshopt_compression";
     for exponents in [None, Some(ExpMode::Separate)] {
@@ -251,7 +251,7 @@ fn compressed_models_keep_their_plain_copy_true() {
 }
 
 /// A .gltf stays one, with its file.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_gltf_stays_text() {
     let model = by_draco(&mesh(), 7, 14);
     let mut json = text_of(&model);
@@ -278,7 +278,7 @@ fn compressed_gltf_stays_text() {
     assert_eq!(names, Ok(vec!["a b.bin".to_owned()]));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_models_are_marked() {
     let mesh = shapes::asteroid(60, 70);
     for (name, model, _) in all(&mesh) {
@@ -303,7 +303,7 @@ fn compressed_models_are_marked() {
 }
 
 /// Whatever is done to a stream, the answer is an error or a sound document.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_damage_does_no_harm() {
     for (name, model, _) in all(&shapes::asteroid(6, 8)) {
         let length = u32::from_le_bytes(*model[12..].first_chunk().expect("a length")) as usize;
@@ -326,7 +326,7 @@ fn compressed_damage_does_no_harm() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn compressed_lies_are_refused_before_they_cost_anything() {
     let mesh = mesh();
     let count = format!(r#""count":{},"mode""#, mesh.positions.len());

@@ -1,9 +1,9 @@
 //! Single properties of documents, one each.
 
+use crate::portable_test;
 use meshmark::internals::document::{
     Container, Document, DocumentError, Files, Mode, Node, PositionGrid, Transform,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::oracle::Oracle;
 use crate::support::glb::glb;
@@ -55,7 +55,7 @@ fn stored_as(component: Component, normalized: bool, raw: &[[f64; 3]]) -> Docume
     read(&builder)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn normalized_integers_are_decoded_by_the_equations_of_the_specification() {
     let decoded = |component, raw| {
         stored_as(component, true, &[raw])
@@ -84,7 +84,7 @@ fn normalized_integers_are_decoded_by_the_equations_of_the_specification() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn new_positions_go_to_the_nearest_value_of_the_grid_within_its_range() {
     let stored = |component, normalized, position| {
         let mut document = stored_as(component, normalized, &[[5.0; 3]]);
@@ -119,7 +119,7 @@ fn new_positions_go_to_the_nearest_value_of_the_grid_within_its_range() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_grid_is_told() {
     let grid = |component, normalized| {
         stored_as(component, normalized, &[[0.0; 3]])
@@ -132,7 +132,7 @@ fn the_grid_is_told() {
     assert_eq!(grid(Component::U16, false), integer(1.0, 0.0, 65535.0));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn values_that_are_equal_keep_their_bytes() {
     // Both -128 and -127 are -1 when normalized; zero has two signs.
     let mut document = stored_as(Component::I8, true, &[[-128.0, -127.0, 0.0]]);
@@ -157,7 +157,7 @@ fn values_that_are_equal_keep_their_bytes() {
     assert_eq!(document.write().expect("a written document"), before);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_may_be_packed_without_alignment() {
     let document = stored_as(Component::U8, false, &[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(
@@ -166,7 +166,7 @@ fn positions_may_be_packed_without_alignment() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn wrong_new_positions_are_refused_and_nothing_is_stored() {
     let mut document = read(&triangle(Packing::Glb));
     let before = document.write().expect("a written document");
@@ -206,7 +206,7 @@ fn triangles(
     read(&builder).triangles(0, 0)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn triangles_wind_as_the_specification_says() {
     assert_eq!(triangles(4, 6, None), Ok(vec![[0, 1, 2], [3, 4, 5]]));
     assert_eq!(
@@ -225,7 +225,7 @@ fn triangles_wind_as_the_specification_says() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn vertices_left_over_form_no_triangle() {
     for mode in [4, 5, 6] {
         assert_eq!(triangles(mode, 2, None), Ok(vec![]));
@@ -233,14 +233,14 @@ fn vertices_left_over_form_no_triangle() {
     assert_eq!(triangles(4, 5, None), Ok(vec![[0, 1, 2]]));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn points_and_lines_have_no_triangles() {
     for mode in [0, 1, 2, 3] {
         assert_eq!(triangles(mode, 6, None), Ok(vec![]));
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_corner_must_be_a_vertex() {
     let error = triangles(4, 3, Some((Component::U16, &[0, 1, 3]))).expect_err("no vertex 3");
     assert_eq!(
@@ -263,7 +263,7 @@ fn a_corner_must_be_a_vertex() {
 }
 
 /// Exporters before 2019 counted vertices up to the largest 16-bit number, and every loader reads what they meant.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_reserved_value_is_a_vertex_of_a_list_that_has_it() {
     let of =
         |num_points, component, value| triangles(4, num_points, Some((component, &[0, 1, value])));
@@ -283,7 +283,7 @@ fn the_reserved_value_is_a_vertex_of_a_list_that_has_it() {
 
 // Bounds and padding.
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bounds_keep_their_spelling_where_they_stay_true() {
     let mut builder = GltfBuilder::new(Packing::DataUri);
     let points = [[0.0; 3], [0.1, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -308,7 +308,7 @@ fn bounds_keep_their_spelling_where_they_stay_true() {
     assert!(after.contains(r#"["what",null]"#));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn unusable_bounds_of_a_changed_accessor_are_written_anew() {
     let mut builder = triangle(Packing::External);
     builder.accessors[0] = builder.accessors[0].replace(r#""min":[0,0,0]"#, r#""min":[0,0]"#);
@@ -317,7 +317,7 @@ fn unusable_bounds_of_a_changed_accessor_are_written_anew() {
     assert!(text(&document).contains(r#""min":[-3.0,0.0,0.0],"max":[1,1,0]"#));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bounds_of_integers_are_the_stored_integers() {
     let mut builder = GltfBuilder::new(Packing::External);
     let layout = Layout {
@@ -334,7 +334,7 @@ fn bounds_of_integers_are_the_stored_integers() {
     assert!(text(&document).contains(r#""min":[-16384,0,0],"max":[32767.0,32767,1]"#));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bounds_of_data_that_is_not_finite_stay() {
     let mut builder = GltfBuilder::new(Packing::External);
     let points = [TRIANGLE[0], TRIANGLE[1], [0.0, f64::INFINITY, 0.0]];
@@ -352,7 +352,7 @@ fn bounds_of_data_that_is_not_finite_stay() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn padding_changes_only_with_the_length_of_the_text() {
     let padded = |builder: &GltfBuilder, padding: &str| {
         let json = builder.json() + padding;
@@ -416,7 +416,7 @@ fn assert_fixed(builder: &GltfBuilder, what: &str) {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_that_serve_another_purpose_stay() {
     let with = |change: &dyn Fn(&mut GltfBuilder)| {
         let mut builder = triangle(Packing::Glb);
@@ -469,7 +469,7 @@ fn positions_that_serve_another_purpose_stay() {
     assert_fixed(&image, "an image");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_fixed_in_part_can_move_elsewhere() {
     let mut builder = triangle(Packing::Glb);
     builder.accessor(
@@ -485,7 +485,7 @@ fn positions_fixed_in_part_can_move_elsewhere() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn strided_data_fixes_the_positions_it_touches() {
     let mut builder = triangle(Packing::Glb);
     // Bytes 4 to 7 and 20 to 23, where positions are 0 to 11, 12 to 23 and 24 to 35.
@@ -499,7 +499,7 @@ fn strided_data_fixes_the_positions_it_touches() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn long_data_fixes_positions_behind_shorter_data() {
     let mut builder = GltfBuilder::new(Packing::Glb);
     let offset = builder.push(0, &[0; 100]);
@@ -517,7 +517,7 @@ fn long_data_fixes_positions_behind_shorter_data() {
     assert!(!read(&builder).is_writable(position));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn sparse_indices_are_not_positions() {
     let mut builder = triangle(Packing::Glb);
     let sparse = builder.accessor(
@@ -533,7 +533,7 @@ fn sparse_indices_are_not_positions() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_that_overlap_in_part_or_in_another_format_stay() {
     let mut builder = triangle(Packing::Glb);
     let shifted = builder.positions_at(0, 4, Layout::F32, &TRIANGLE[..2]);
@@ -551,7 +551,7 @@ fn positions_that_overlap_in_part_or_in_another_format_stay() {
     assert_fixed(&builder, "another number format");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_of_two_accessors_in_the_same_bytes_are_one() {
     let mut builder = triangle(Packing::External);
     let view = builder.view(0, 12, 24, None);
@@ -574,7 +574,7 @@ fn positions_of_two_accessors_in_the_same_bytes_are_one() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn elements_that_are_stored_nowhere_stay_zero() {
     let mut builder = GltfBuilder::new(Packing::Glb);
     let position = builder.sparse_positions(0, Layout::F32, &TRIANGLE, &[1], false);
@@ -591,7 +591,7 @@ fn elements_that_are_stored_nowhere_stay_zero() {
         .expect("the sparse value can move");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_base_under_a_sparse_value_is_not_touched() {
     let mut builder = GltfBuilder::new(Packing::External);
     let position = builder.sparse_positions(0, Layout::F32, &TRIANGLE, &[1], true);
@@ -607,7 +607,7 @@ fn the_base_under_a_sparse_value_is_not_touched() {
 
 // Buffers.
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn data_uris_are_edited_in_place_however_they_are_spelled() {
     let mut builder = triangle(Packing::DataUri);
     builder.push(0, &[1]);
@@ -642,7 +642,7 @@ fn data_uris_are_edited_in_place_however_they_are_spelled() {
     assert_eq!(text(&document), respelled(&expected.json()));
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn external_files_are_found_by_decoded_name_and_given_out_if_changed() {
     let mut builder = triangle(Packing::External);
     builder.push(1, &[1, 2, 3]);
@@ -653,7 +653,7 @@ fn external_files_are_found_by_decoded_name_and_given_out_if_changed() {
     assert_eq!(written.files.keys().collect::<Vec<_>>(), ["part 0.bin"]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn two_buffers_of_one_file_are_the_same_bytes() {
     let mut builder = triangle(Packing::External);
     builder.buffers.push(builder.buffers[0].clone());
@@ -673,7 +673,7 @@ fn two_buffers_of_one_file_are_the_same_bytes() {
     assert_eq!(document.write().expect("a written document").files.len(), 1);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bytes_after_a_buffer_are_kept() {
     let mut model = triangle(Packing::External).build();
     model
@@ -688,7 +688,7 @@ fn bytes_after_a_buffer_are_kept() {
 
 // JSON.
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_byte_order_mark_is_kept() {
     let model = Built {
         bytes: format!("\u{feff}{}", triangle(Packing::DataUri).json()).into_bytes(),
@@ -708,7 +708,7 @@ fn a_byte_order_mark_is_kept() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn bytes_after_the_end_of_a_glb_are_kept() {
     let Built { mut bytes, files } = triangle(Packing::Glb).build();
     bytes.extend_from_slice(b"signed by nobody");
@@ -720,7 +720,7 @@ fn bytes_after_the_end_of_a_glb_are_kept() {
     assert_eq!(&written[length as usize..], b"signed by nobody");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn what_is_null_is_not_there() {
     let mut builder = triangle(Packing::DataUri);
     builder.accessors[0] = builder.accessors[0]
@@ -748,7 +748,7 @@ fn what_is_null_is_not_there() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn unknown_data_may_be_anything() {
     let mut builder = triangle(Packing::DataUri);
     let deep = format!("{}{}", "[".repeat(20_000), "]".repeat(20_000));
@@ -759,7 +759,7 @@ fn unknown_data_may_be_anything() {
     assert_eq!(text(&read(&builder)), builder.json());
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_scene_graph_is_given_out() {
     let mut builder = triangle(Packing::Glb);
     builder.node(r#"{"children":[2],"matrix":[1,0,0,0,0,2,0,0,0,0,3,0,4,5,6,1]}"#);
@@ -802,7 +802,7 @@ fn the_scene_graph_is_given_out() {
     assert_eq!(document.extensions_used(), ["A"]);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn primitives_are_given_out() {
     let mut builder = triangle(Packing::Glb);
     let indices = builder.indices(0, Component::U8, &[0, 1, 2]);
@@ -835,7 +835,7 @@ fn primitives_are_given_out() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn harmless_extensions_may_be_required() {
     for name in [
         "KHR_mesh_quantization",

@@ -2,24 +2,24 @@
 
 use std::collections::BTreeSet;
 
+use crate::portable_test;
 use meshmark::internals::document::{Document, Files, PositionGrid, Slot};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::cases::{self, Case, Noise};
 use super::oracle::Oracle;
 use crate::support::gltf_builder::{Built, Component};
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn an_unchanged_document_is_written_byte_for_byte() {
     cases::all().iter().for_each(identity);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_are_what_a_second_reader_finds() {
     cases::all().iter().for_each(agreement);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn new_positions_change_nothing_but_themselves_and_their_bounds() {
     let cases = cases::all();
     let num_changed = cases.iter().filter(|case| displacement(case)).count();
@@ -29,7 +29,7 @@ fn new_positions_change_nothing_but_themselves_and_their_bounds() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_moved_and_moved_back_leave_no_trace() {
     cases::all().iter().for_each(return_trip);
 }

@@ -1,7 +1,7 @@
 //! Malformed and unsupported files: each is refused with its code and the place.
 
+use crate::portable_test;
 use meshmark::internals::document::{Document, DocumentError, Files, MAX_UNBACKED};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::glb::glb;
 use crate::support::gltf_builder::{Built, Component, GltfBuilder, Layout, Packing, primitive};
@@ -54,7 +54,7 @@ fn assert_refused(name: &str, bytes: &[u8], files: &Files, code: &str, pointer: 
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_sound_file_is_read() {
     let Built { bytes, files } = sound().build();
     assert_eq!(read(&bytes, &files), Ok(()));
@@ -63,7 +63,7 @@ fn the_sound_file_is_read() {
 /// A text to look for in the sound file's JSON, what to put in its place, and the refusal.
 type Replacement<'a> = (&'a str, &'a str, &'a str, Option<&'a str>);
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn malformed_json_is_refused() {
     let replacements: &[Replacement] = &[
         // Text and types.
@@ -485,7 +485,7 @@ fn malformed_json_is_refused() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn malformed_numbers_in_buffers_are_refused() {
     let change = |offset: usize, bytes: &[u8]| {
         let Built {
@@ -532,7 +532,7 @@ fn malformed_numbers_in_buffers_are_refused() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn sparse_positions_are_checked_before_anything_is_given_out() {
     let Built { bytes, mut files } = sound().build();
     let buffer = files.get_mut("part 0.bin").expect("the buffer");
@@ -544,7 +544,7 @@ fn sparse_positions_are_checked_before_anything_is_given_out() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_lying_count_without_data_allocates_nothing() {
     let mut builder = sound();
     builder.accessors[0] = r#"{"componentType":5126,"count":4000000000,"type":"VEC3"}"#.into();
@@ -559,7 +559,7 @@ fn a_lying_count_without_data_allocates_nothing() {
 }
 
 /// What is stored nowhere is allowed for all accessors together.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn many_counts_without_data_are_refused_together() {
     let with = |counts: &[u64]| {
         let mut builder = GltfBuilder::new(Packing::Glb);
@@ -602,7 +602,7 @@ fn overlapping(num_accessors: usize, view: impl Fn(usize) -> (usize, usize)) -> 
 }
 
 /// Many accessors of the same bytes are legal, but not so many that reading them takes for ever.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn positions_of_the_same_bytes_are_limited() {
     // Beginnings of one list, as levels of detail are: one use of their bytes.
     let Built { bytes, files } = overlapping(200, |number| (0, 20_000 - number));
@@ -627,7 +627,7 @@ fn positions_of_the_same_bytes_are_limited() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn too_many_nodes_are_refused() {
     let nodes = vec!["{}"; (1 << 20) + 1].join(",");
     let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}]}}"#);
@@ -640,7 +640,7 @@ fn too_many_nodes_are_refused() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn external_buffers_are_named_once() {
     let mut builder = sound();
     builder.buffers.push(vec![0; 4]);
@@ -656,7 +656,7 @@ fn external_buffers_are_named_once() {
     assert!(Document::file_names(b"{").is_err());
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn linked_files_are_named_whatever_names_them() {
     let text = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a%20b.bin"},{"uri":"data:;base64,AA"}],
         "images":[{"uri":"t/x.png"},{"uri":"https://example.org/y.png"},{"uri":"//example.org/z.png"},{"uri":"t/x.png"}],
@@ -669,7 +669,7 @@ fn linked_files_are_named_whatever_names_them() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn the_columns_of_a_matrix_are_padded() {
     // The first buffer view has 48 bytes: 4 matrices of 3 columns of 3 bytes, 2 of 3 columns of 6 bytes.
     for (component, count) in [(Component::U8, 4), (Component::U16, 2)] {
@@ -694,7 +694,7 @@ fn the_columns_of_a_matrix_are_padded() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn malformed_containers_are_refused() {
     let json = br#"{"asset":{"version":"2.0"}}     "#.to_vec();
     let sound = glb(&[
@@ -763,7 +763,7 @@ fn malformed_containers_are_refused() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn a_chunk_length_is_not_the_buffer_length() {
     let json = br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":9}]}"#.to_vec();
     let model = glb(&[(*b"JSON", json.clone()), (*b"BIN\0", vec![0; 8])]);

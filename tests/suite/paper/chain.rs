@@ -1,5 +1,6 @@
 //! The paper's system: runs, sparse QIM, spherical coordinates, hosts. Sections and equations are those of Vasic 2012.
 
+use crate::portable_test;
 use crate::support::fixtures::{asteroid, key, random};
 use glam::DVec3;
 use meshmark::internals::attack::{catmull_clark, noise, reorder, similarity, simplify};
@@ -11,7 +12,6 @@ use meshmark::internals::paper::run_length::{self, Channel};
 use meshmark::internals::paper::{
     Barycentre, Chain, Embedded, Ranking, SparseQim, Spherical, rank,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
 const CLEAN: Channel = Channel {
     insertion: 0.0,
@@ -35,7 +35,7 @@ fn signs(evidence: &[f64]) -> Vec<bool> {
     evidence.iter().map(|&value| value < 0.0).collect()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn section_3b_maps_bits_to_runs() {
     assert_eq!(
         run_length::encode(&bits("011011")),
@@ -44,7 +44,7 @@ fn section_3b_maps_bits_to_runs() {
     assert!(run_length::encode(&[]).is_empty());
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn section_3b_runs_are_cut_again() {
     let sent = bits("0110100011101");
     let symbols = sure(&run_length::encode(&sent));
@@ -61,7 +61,7 @@ fn section_3b_runs_are_cut_again() {
 }
 
 /// A run that lost a symbol or gained one leaves all the others in their places.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn section_3b_losses_and_gains_cost_a_run_at_most() {
     let channel = Channel {
         insertion: 0.02,
@@ -82,7 +82,7 @@ fn section_3b_losses_and_gains_cost_a_run_at_most() {
 }
 
 /// Forward-backward against the sum over all bits and all ways of cutting.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn section_3b_decoder_is_exact() {
     const BITS: usize = 3;
     for (case, &(insertion, deletion)) in [(0.0, 0.0), (0.1, 0.2), (0.3, 0.05)].iter().enumerate() {
@@ -143,7 +143,7 @@ fn arrivals(sent: usize, arrived: usize, channel: Channel) -> f64 {
 }
 
 /// A likelihood of so many symbols is smaller than any number.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn run_length_survives_length() {
     let sent: Vec<bool> = (0..2000).map(|place| random(place) < 0.5).collect();
     let soft: Vec<f64> = sure(&run_length::encode(&sent))
@@ -153,7 +153,7 @@ fn run_length_survives_length() {
     assert_eq!(signs(&run_length::decode(&soft, sent.len(), CLEAN)), sent);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn run_length_survives_nothing_and_nonsense() {
     assert_eq!(run_length::decode(&[], 3, CLEAN), [0.0; 3]);
     let nonsense = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0];
@@ -162,7 +162,7 @@ fn run_length_survives_nothing_and_nonsense() {
 }
 
 /// Q_u(x) = D [(x - (-1)^(u+1) D/4) / D] + (-1)^(u+1) D/4.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn equation_5_quantizes_to_a_quarter_above_or_below() {
     let step = 0.8;
     for place in 0..200 {
@@ -180,7 +180,7 @@ fn equation_5_quantizes_to_a_quarter_above_or_below() {
 }
 
 /// y = x + (Q_u(x.p) - x.p) p.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn equation_6_moves_along_a_keyed_unit_vector() {
     let qim = SparseQim::new(&key(3), 3, 0.1);
     let mut moves = Vec::new();
@@ -206,7 +206,7 @@ fn equation_6_moves_along_a_keyed_unit_vector() {
 }
 
 /// u = argmin |r.p - Q_u(r.p)|.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn equation_7_recovers_the_bit() {
     let (qim, other) = (
         SparseQim::new(&key(3), 3, 0.1),
@@ -229,7 +229,7 @@ fn equation_7_recovers_the_bit() {
     assert!((70..130).contains(&strangers), "{strangers}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn spherical_coordinates_follow_a_similarity() {
     let mesh = asteroid();
     let turned = similarity(&mesh, 5);
@@ -244,7 +244,7 @@ fn spherical_coordinates_follow_a_similarity() {
 }
 
 /// The mean of the vertices follows the tessellation; those of area and volume do not.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn spherical_barycentres_and_tessellation() {
     let mesh = shapes::asteroid(60, 80);
     let coarse = simplify(&mesh, 0.5);
@@ -286,7 +286,7 @@ fn known(hosts: &[u32]) -> Vec<Option<u32>> {
     hosts.iter().map(|&host| Some(host)).collect()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn chain_is_read_where_the_indices_are_known() {
     let (mesh, hosts, embedded) = marked(8e-4);
     let moved = Distortion::between(&mesh.positions, &embedded.mesh.positions);
@@ -317,7 +317,7 @@ fn chain_is_read_where_the_indices_are_known() {
 
 /// The paper's assumption is what it stands on: with nothing but the suspect's own ranking half of the bits are wrong, though
 /// nothing has happened to the mesh but the mark.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn chain_is_lost_where_hosts_are_ranked_again() {
     let (_, _, embedded) = marked(8e-4);
     let key = key(1);
@@ -334,7 +334,7 @@ fn chain_is_lost_where_hosts_are_ranked_again() {
     assert!((16..48).contains(&wrong), "{wrong} of 64 bits");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn chain_says_nothing_to_another_key() {
     let (_, hosts, embedded) = marked(8e-4);
     let key = key(2);
@@ -346,7 +346,7 @@ fn chain_says_nothing_to_another_key() {
 }
 
 /// Eq. 1: whoever has the original needs no indices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn equation_1_reads_with_the_original() {
     let (mesh, hosts, embedded) = marked(8e-4);
     let suspect = similarity(&reorder(&embedded.mesh, 3), 4);
@@ -358,7 +358,7 @@ fn equation_1_reads_with_the_original() {
     assert!(wrong < 0.1 && lost == 0.0, "{wrong}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn chain_refuses_too_few_hosts() {
     let mesh = asteroid();
     let hosts: Vec<u32> = (0..1151).collect();

@@ -1,11 +1,11 @@
 //! The study of errors, Fig. 5.
 
+use crate::portable_test;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::paper::figure_5::{Case, Errors, Finding, Hosts, errors, figure_5};
 use meshmark::internals::paper::{Barycentre, Ranking};
 use meshmark::internals::paper::{Smoothing, Spread};
 use meshmark::internals::progress::ignore;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn pebble() -> Mesh {
     shapes::asteroid(40, 60)
@@ -27,7 +27,7 @@ fn found(errors: &[Errors], finding: Finding) -> &Errors {
 }
 
 /// Unattacked, every way is right but one: ranking again is at chance, as the mark itself changes the ranking.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn figure_5_without_an_attack() {
     let mesh = pebble();
     let of = |hosts| errors(&mesh, &case(hosts, 0), 0..2, &mut ignore).unwrap();
@@ -47,7 +47,7 @@ fn figure_5_without_an_attack() {
     assert_eq!(found(&all, Finding::Cells).payload.most, 0.0);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn errors_grow_with_the_smoothing() {
     let of = |iterations| {
         let case = case(Hosts::Ranked(Ranking::Integrated), iterations);
@@ -58,14 +58,14 @@ fn errors_grow_with_the_smoothing() {
     assert!(0.0 < once && once < twice && twice < 0.5, "{once} {twice}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn errors_refuse_what_is_too_small() {
     let small = shapes::asteroid(10, 20);
     let error = figure_5(&small, Barycentre::Vertices, 0..1, &mut ignore).unwrap_err();
     assert_eq!(error.code(), "carrier.too-few-hosts");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn spread_of_draws() {
     let spread = Spread::of(&[1.0, 2.0, 6.0]);
     assert_eq!((spread.mean, spread.least, spread.most), (3.0, 1.0, 6.0));

@@ -1,10 +1,10 @@
 //! Rankings of vertices by stability.
 
+use crate::portable_test;
 use glam::DVec3;
 use meshmark::internals::attack::{reorder, similarity};
 use meshmark::internals::mesh::{Edges, Mesh, shapes};
 use meshmark::internals::paper::{Ranking, Stability, rank};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 fn is_decreasing(found: &Stability) -> bool {
     found.order.len() == found.stability.len()
@@ -15,7 +15,7 @@ fn is_decreasing(found: &Stability) -> bool {
             .all(|(s, v)| s[0] > s[1] || s[0] == s[1] && v[0] < v[1])
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_gives_both_vectors_in_decreasing_order() {
     let mesh = shapes::asteroid(20, 30);
     for ranking in Ranking::ALL {
@@ -32,7 +32,7 @@ fn osveta_gives_both_vectors_in_decreasing_order() {
 }
 
 /// A similarity changes no order, but of vertices that are equal to the last bits; a new numbering changes names alone.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_ranks_the_shape_and_not_its_place() {
     let mesh = shapes::torus_knot(60, 20);
     for ranking in Ranking::ALL {
@@ -65,7 +65,7 @@ fn osveta_ranks_the_shape_and_not_its_place() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_prefers_a_spike_to_the_plane_and_the_plane_to_its_border() {
     let mut sheet = shapes::terrain(10);
     sheet.positions.iter_mut().for_each(|p| p.z = 0.0);
@@ -87,7 +87,7 @@ fn osveta_prefers_a_spike_to_the_plane_and_the_plane_to_its_border() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_rejects_errors_of_topology() {
     let mut mesh = shapes::asteroid(20, 30);
     let num_vertices = mesh.positions.len() as u32;
@@ -106,7 +106,7 @@ fn osveta_rejects_errors_of_topology() {
 }
 
 /// A dent is concave, a bump is not; together they are all that was ranked, each in its order.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_splits_concave_from_convex() {
     let mut sheet = shapes::terrain(12);
     for p in &mut sheet.positions {
@@ -121,7 +121,7 @@ fn osveta_splits_concave_from_convex() {
     assert_eq!(convex.order[0], 3 * 13 + 6);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn osveta_does_not_mind_winding() {
     let mesh = shapes::asteroid(20, 30);
     let mut mixed = mesh.clone();

@@ -1,11 +1,11 @@
 //! The study of the seed paper: hosts found again.
 
+use crate::portable_test;
 use meshmark::internals::mesh::{Mesh, shapes};
 use meshmark::internals::paper::{
     HostsOptions, HostsRow, Preparation, Rule, RuleCounts, Smoothing, fields, hosts, trace,
 };
 use meshmark::internals::paper::{Ranking, rank};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A mesh of 3000 faces, as the paper's was made.
 fn optimized() -> Mesh {
@@ -24,7 +24,7 @@ fn by(row: &HostsRow, rule: Rule) -> &RuleCounts {
     row.rules.iter().find(|counts| counts.rule == rule).unwrap()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn study_finds_everything_where_nothing_was_smoothed() {
     let mesh = optimized();
     let row = row(&mesh, Smoothing::MeshSmooth, 0);
@@ -45,7 +45,7 @@ fn study_finds_everything_where_nothing_was_smoothed() {
 }
 
 /// Random hosts are found as often as chance has it, the rankings more often: Table I.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn study_rankings_beat_chance() {
     let mesh = optimized();
     for iterations in [1, 2] {
@@ -85,7 +85,7 @@ fn study_rankings_beat_chance() {
 }
 
 /// On a plane every collapse is for free, and originals must not be preferred for their low indices.
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn study_does_not_prefer_originals_among_equals() {
     let mut sheet = shapes::terrain(24);
     sheet.positions.iter_mut().for_each(|p| p.z = 0.0);
@@ -102,7 +102,7 @@ fn study_does_not_prefer_originals_among_equals() {
     );
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn study_compares_every_smoothing() {
     let mesh = shapes::asteroid(16, 24);
     for smoothing in Smoothing::ALL {
@@ -128,7 +128,7 @@ fn study_compares_every_smoothing() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[portable_test]
 fn study_fields_and_traces_agree_with_the_ranking() {
     let mesh = shapes::asteroid(16, 24);
     let order = rank(&mesh, Ranking::Integrated).order;

@@ -256,14 +256,17 @@ fn the_smallest_and_the_largest_numbers_are_answered() {
     }
 }
 
+/// Points on a circle.
+fn rim(count: u32, height: fn(u32) -> f64) -> impl Iterator<Item = DVec3> {
+    (0..count).map(move |k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);
+        DVec3::new(libm::cos(angle), libm::sin(angle), height(k))
+    })
+}
+
 #[test]
-fn triangles_about_one_vertex_and_on_one_edge_are_answered() {
-    let rim = |count: u32, height: fn(u32) -> f64| {
-        (0..count).map(move |k| {
-            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);
-            DVec3::new(libm::cos(angle), libm::sin(angle), height(k))
-        })
-    };
+#[ignore = "takes a minute: cargo xtask test --all"]
+fn triangles_about_one_vertex_are_answered() {
     // More than simplification goes through at each change of the vertex.
     let count = 65_000;
     let rough = |k| f64::from(k * 37 % 101) / 1e4;
@@ -277,6 +280,10 @@ fn triangles_about_one_vertex_and_on_one_edge_are_answered() {
             .collect(),
     };
     answers("fan", fan, &ENTRIES);
+}
+
+#[test]
+fn triangles_on_one_edge_are_answered() {
     let edge = Mesh {
         positions: [DVec3::ZERO, DVec3::Z]
             .into_iter()
@@ -311,41 +318,46 @@ fn balls_and_specks(radius: f64, places: &[[f64; 3]], corner: f64) -> Mesh {
     Mesh::joined(balls.chain(specks))
 }
 
+const TETRAHEDRON: [[f64; 3]; 4] = [
+    [1.0, 1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+];
+
+/// The same on a ball of radius 1.
+fn within_a_ball(corners: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let place = |corner: &[f64; 3]| corner.map(|x| x * 0.5774);
+    corners.iter().map(place).collect()
+}
+
+fn check_finds_nothing(name: &str, mesh: &Mesh) {
+    let folder = Folder::with(name, &to_glb(mesh));
+    let report = folder.run("extract model.glb --key-file key");
+    assert_eq!(report["verdict"], "none", "{report}");
+}
+
 /// The tables of a scan once covered all that lies between the specks.
 #[test]
 fn specks_far_from_what_is_read_are_answered() {
-    let of_tetrahedron = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ]
-    .map(|place| place.map(|x| x * 0.5774));
-    let of_cube: Vec<[f64; 3]> = (0..8)
-        .map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 1.1548 - 0.5774))
-        .collect();
-    for (name, radius, places) in [
-        ("tetrahedron", 0.25, &of_tetrahedron[..]),
-        ("cube", 0.19, &of_cube),
-    ] {
-        let model = to_glb(&balls_and_specks(radius, places, 3.5));
-        let folder = Folder::with(name, &model);
-        let report = folder.run("extract model.glb --key-file key");
-        assert_eq!(report["verdict"], "none", "{report}");
-    }
+    let balls = balls_and_specks(0.25, &within_a_ball(&TETRAHEDRON), 3.5);
+    check_finds_nothing("tetrahedron", &balls);
+}
+
+#[test]
+#[ignore = "takes a minute: cargo xtask test --all"]
+fn specks_far_from_eight_balls_are_answered() {
+    let corner = |k: usize| [0, 1, 2].map(|axis| (k >> axis & 1) as f64 * 2.0 - 1.0);
+    let cube: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    let balls = balls_and_specks(0.19, &within_a_ball(&cube), 3.5);
+    check_finds_nothing("cube", &balls);
 }
 
 /// Needles without an area meet clusters everywhere between balls whose frame has no axes: of all that was tried, what makes a check work
 /// most.
 #[test]
+#[ignore = "takes a minute: cargo xtask test --all"]
 fn needles_among_balls_are_answered() {
-    let places = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ]
-    .map(|place| place.map(|x| x * 0.5774));
     // Multiples of irrational numbers fill a cube evenly.
     let point = |k: u32| {
         let within = |turns: f64| (f64::from(k) * turns).fract() * 2.4 - 1.2;
@@ -355,9 +367,6 @@ fn needles_among_balls_are_answered() {
         let [a, b] = [2 * k, 2 * k + 1].map(point);
         [a, b, [b[0] + 1e-4, b[1], b[2] + 1e-4]]
     }));
-    let balls = balls_and_specks(0.27, &places, 1.2);
-    let model = to_glb(&Mesh::joined([balls, needles]));
-    let folder = Folder::with("needles", &model);
-    let report = folder.run("extract model.glb --key-file key");
-    assert_eq!(report["verdict"], "none", "{report}");
+    let balls = balls_and_specks(0.27, &within_a_ball(&TETRAHEDRON), 1.2);
+    check_finds_nothing("needles", &Mesh::joined([balls, needles]));
 }

@@ -73,8 +73,8 @@ pub fn test(all: bool) -> Result<()> {
 /// Adds what is left out of a commit's checks.
 fn add_rest<'a>(steps: &mut Steps<'a>, manifest: &'a Manifest) {
     let native = ["native suite"];
-    let rest = format!("{NATIVE} --test suite -- --ignored --skip models::");
-    add(steps, "all floors and keys", &native, &rest, TESTS);
+    let rest = format!("{NATIVE} --test suite --test limits -- --ignored --skip models::");
+    add(steps, "what takes minutes", &native, &rest, TESTS);
     steps.add("wasm lint", &["wasm compiler"], |log| {
         let lint =
             "cargo clippy --lib --test suite --features wasm-full,wasm-research -- -Dwarnings";

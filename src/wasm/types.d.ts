@@ -436,7 +436,9 @@ export interface Comparison {
   isMirrored: boolean;
   /** In how many parts the suspect lies there, each moved by itself: 1 where it lies as a whole, 0 where it lies nowhere. */
   numParts: number;
-  /** What takes the suspect, or the largest of its parts, onto the original: three columns of a linear map, and a shift, in the original's scene units. */
+  /** Whether it, or a part of it, had to be bent to lie there: it is in another pose. */
+  isBent: boolean;
+  /** What takes the suspect, or the largest of its parts, onto the original, or some of it where it was bent: three columns of a linear map, and a shift, in the original's scene units. */
   motion: number[][] | null;
   /** Natural logarithm of the bound of the false-positive probability, every choice charged. There where found or present, or asked for. */
   lnP?: number;

@@ -29,6 +29,15 @@ pub(super) fn changes(comparison: &Comparison, triangles: Option<f64>) -> Vec<St
     if comparison.is_mirrored {
         changes.push("mirrored".to_owned());
     }
+    if comparison.num_parts > 1 {
+        let parts = comparison.num_parts;
+        changes.push(format!(
+            "taken apart: {parts} parts lie on the original, each moved by itself"
+        ));
+    }
+    if comparison.is_bent {
+        changes.push("bent into another pose".to_owned());
+    }
     let linear = DMat3::from_cols(
         DVec3::from_array(x),
         DVec3::from_array(y),
@@ -84,6 +93,7 @@ mod tests {
             covered,
             is_mirrored: false,
             num_parts: 1,
+            is_bent: false,
             motion: Some([
                 [0.0, x, 0.0],
                 [-y, 0.0, 0.0],

@@ -93,7 +93,7 @@ impl Compared {
         let is_same = comparison.shape == Shape::Same;
         let motion = comparison.motion.filter(|_| is_same);
         // Parts were moved already.
-        let motion = motion.map(|motion| match comparison.num_parts > 1 {
+        let motion = motion.map(|motion| match comparison.is_in_parts() {
             true => columns(&Motion::IDENTITY),
             false => motion,
         });
@@ -170,7 +170,7 @@ impl Informed {
     /// What is said of it. Of a suspect that was taken apart, what is shown is the parts where they lie.
     pub(super) fn concluded(self, blind: Option<Blind>) -> Compared {
         let comparison = conclude(&self.heard, blind);
-        let assembled = self.heard.assembled.filter(|_| comparison.num_parts > 1);
+        let assembled = self.heard.assembled.filter(|_| comparison.is_in_parts());
         Compared {
             comparison,
             original: self.original,
@@ -249,6 +249,7 @@ pub(super) struct Lay {
     /// The whole, or the largest of its parts.
     pub registration: Registration,
     pub num_parts: usize,
+    pub is_bent: bool,
     pub covered: f64,
 }
 
@@ -263,6 +264,7 @@ impl Lay {
 pub(super) struct Lying<'a> {
     registration: Registration,
     num_parts: usize,
+    is_bent: bool,
     shown: Shown<'a>,
     kept: Option<Kept>,
 }
@@ -273,11 +275,12 @@ impl<'a> Lying<'a> {
         (original, views): (&'a Original, &'a Views),
         (mesh, motion): (&Mesh, &Motion),
         registration: Registration,
-        num_parts: usize,
+        (num_parts, is_bent): (usize, bool),
     ) -> Option<Lying<'a>> {
         Some(Lying {
             registration,
             num_parts,
+            is_bent,
             shown: Shown::new(original, views, mesh, motion)?,
             kept: kept(original, mesh, motion),
         })
@@ -287,6 +290,7 @@ impl<'a> Lying<'a> {
         Lay {
             registration: self.registration,
             num_parts: self.num_parts,
+            is_bent: self.is_bent,
             covered: self.shown.covered(),
         }
     }
@@ -394,8 +398,12 @@ impl Iterator for Searches<'_> {
         if self.is_over {
             return None;
         }
+        let is_next = self.searches.as_slice().first() == Some(&Search::Mirrored);
         let is_mostly_there = self.is_whole && (LEAST_NEAR..SURE).contains(&self.near());
-        if is_mostly_there && let Some(found) = self.apart() {
+        if is_next
+            && is_mostly_there
+            && let Some(found) = self.apart()
+        {
             return Some(found);
         }
         let needed = |search: &&Search| !(self.is_explained && **search == Search::Mirrored);
@@ -442,16 +450,17 @@ impl<'a> Iterator for Lyings<'a> {
         let found: Vec<Lying> = match self.searches.next()? {
             Found::Whole(registrations) => {
                 let registrations = registrations.into_iter();
-                let lying = |r: Registration| Lying::new(at, (suspect, &r.motion), r, 1);
+                let lying = |r: Registration| Lying::new(at, (suspect, &r.motion), r, (1, false));
                 registrations.filter_map(lying).collect()
             }
             Found::Apart(Assembly {
                 mesh,
                 num_parts,
+                is_bent,
                 registration,
             }) => {
                 let parts = (&mesh, &Motion::IDENTITY);
-                let lying = Lying::new(at, parts, registration, num_parts);
+                let lying = Lying::new(at, parts, registration, (num_parts, is_bent));
                 self.assembled = Some(mesh);
                 lying.into_iter().collect()
             }
@@ -661,6 +670,7 @@ pub(super) fn conclude(heard: &Heard, blind: Option<Blind>) -> Comparison {
         near: lay.map_or(0.0, |lay| lay.registration.near),
         covered: lay.map_or(0.0, |lay| lay.covered),
         num_parts: lay.map_or(0, |lay| lay.num_parts),
+        is_bent: lay.is_some_and(|lay| lay.is_bent),
         is_mirrored: lay.is_some_and(|lay| lay.registration.motion.is_mirrored()),
         motion: lay.map(|lay| columns(&lay.registration.motion)),
         ln_p,

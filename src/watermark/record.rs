@@ -258,6 +258,7 @@ fn hear(
                 lays.extend(registrations.into_iter().map(|registration| Lay {
                     registration,
                     num_parts: 1,
+                    is_bent: false,
                     covered: original.covered_by(suspect, &registration.motion),
                 }));
                 read(suspect, &motions, known)
@@ -266,6 +267,7 @@ fn hear(
                 lays.push(Lay {
                     registration: assembly.registration,
                     num_parts: assembly.num_parts,
+                    is_bent: assembly.is_bent,
                     covered: original.covered_by(&assembly.mesh, &Motion::IDENTITY),
                 });
                 let is_settled = read(&assembly.mesh, &[Motion::IDENTITY], known);

@@ -213,8 +213,10 @@ pub struct Comparison {
     pub is_mirrored: bool,
     /// In how many parts the suspect lies there, each moved by itself: 1 where it lies as a whole, 0 where it lies nowhere.
     pub num_parts: usize,
-    /// What takes the suspect, or the largest of its parts, onto the original: three columns of a linear map, and a shift in the original's scene units. `None` where it lies
-    /// nowhere.
+    /// Whether it, or a part of it, had to be bent to lie there: it is in another pose.
+    pub is_bent: bool,
+    /// What takes the suspect, or the largest of its parts, onto the original, or some of it where it was bent: three columns of a linear map, and a shift in
+    /// the original's scene units. `None` where it lies nowhere.
     pub motion: Option<[[f64; 3]; 4]>,
     pub(super) ln_p: f64,
     pub(super) shows_ln_p: bool,
@@ -227,6 +229,11 @@ impl Comparison {
         self.ln_p
     }
 
+    /// Whether the suspect was taken apart or bent, so that its parts lie where they are moved, and it does not as a whole.
+    pub(super) fn is_in_parts(&self) -> bool {
+        self.num_parts > 1 || self.is_bent
+    }
+
     /// The same comparison, whose JSON has `lnP` whatever the verdict is.
     pub fn with_details(mut self) -> Comparison {
         self.shows_ln_p = true;
@@ -237,7 +244,7 @@ impl Comparison {
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let num_details = usize::from(self.shows_ln_p);
-        let mut fields = serializer.serialize_struct("Comparison", 11 + num_details)?;
+        let mut fields = serializer.serialize_struct("Comparison", 12 + num_details)?;
         fields.serialize_field("verdict", &self.verdict)?;
         fields.serialize_field("shape", &self.shape)?;
         fields.serialize_field("sentence", &self.sentence)?;
@@ -248,6 +255,7 @@ impl Serialize for Comparison {
         fields.serialize_field("covered", &self.covered)?;
         fields.serialize_field("isMirrored", &self.is_mirrored)?;
         fields.serialize_field("numParts", &self.num_parts)?;
+        fields.serialize_field("isBent", &self.is_bent)?;
         fields.serialize_field("motion", &self.motion)?;
         if self.shows_ln_p {
             fields.serialize_field("lnP", &self.ln_p)?;

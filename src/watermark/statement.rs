@@ -196,10 +196,11 @@ impl Statement<'_> {
             (Shape::Same, _) => format!(
                 "The shape is the original\u{2019}s. {near} of the suspect\u{2019}s surface lies on the original when it is moved there{}, and \
                  shows {} of it.",
-                if comparison.is_mirrored {
-                    " and mirrored"
-                } else {
-                    ""
+                match (comparison.is_mirrored, comparison.is_bent) {
+                    (true, true) => ", mirrored and bent",
+                    (true, false) => " and mirrored",
+                    (false, true) => " and bent",
+                    (false, false) => "",
                 },
                 percent(comparison.covered),
             ),

@@ -1,13 +1,17 @@
 //! A suspect that no one motion lays on the original: taken apart, each part of it lies there in a way of its own.
 //!
-//! What a motion explains is a part. What is left falls into regions that hang together, and each is looked for anew: about where it was joined to a part that
-//! lies already, as a limb in another pose, or by what it looks like, as one of several things that were put together. Knows no key.
+//! What a motion explains, and what bends on from there, is a part. What is left falls into regions that hang together or touch, and each is looked for anew:
+//! about where it was joined to a part that lies already, as a limb in another pose, or by what it looks like, as one of several things that were put together.
+//! Knows no key.
 
+use super::bent::Bent;
 use super::icp::{Freedom, refined};
 use super::points::Points;
 use super::{FINE, Found, Original, REFINED, Registration, features};
 use crate::geometry::Motion;
-use crate::mesh::{Edges, Mesh};
+use crate::geometry::near::Around;
+use crate::geometry::scatter::scattered;
+use crate::mesh::{Edges, Mesh, Sets};
 use glam::{DMat3, DVec3};
 
 /// Regions that are looked for, and those of them by what they look like.
@@ -24,6 +28,11 @@ const LEAST_AFFINE: f64 = 0.3;
 const LEAST_EXACT: f64 = 0.45;
 /// By how much larger or smaller than the first a part may be made: poses turn, and do not scale.
 const MOST_SCALED: f64 = 1.15;
+/// A part bends where that explains so many times as much of it: what does not bend keeps one motion, which leaves all of the mark.
+const MUCH_MORE: f64 = 1.1;
+/// Parts touch where points of them, of so many, are nearer to each other than this share of the root of the suspect's area.
+const TOUCH: f64 = 0.02;
+const TOUCHING: usize = 6000;
 /// Points of a region.
 const POINTS: usize = 2000;
 const CLOUD: usize = 15_000;
@@ -37,21 +46,33 @@ pub struct Assembly {
     pub mesh: Mesh,
     /// How many there are.
     pub num_parts: usize,
+    /// Whether one of them bends.
+    pub is_bent: bool,
     /// How the largest lies, and which share of the whole suspect lies on the original.
     pub registration: Registration,
 }
 
 /// A part that lies.
 struct Part {
+    /// Where it lies; of one that bends, where that began.
     registration: Registration,
-    triangles: Vec<u32>,
+    lying: Lying,
     area: f64,
+    is_bent: bool,
+}
+
+/// Triangles that lie on the original, and where they do.
+struct Lying {
+    triangles: Vec<u32>,
+    mesh: Mesh,
 }
 
 struct Apart<'a> {
     original: &'a Original<'a>,
     suspect: &'a Mesh,
     areas: Vec<f64>,
+    /// Pairs of triangles that touch and do not hang together.
+    touching: Vec<[u32; 2]>,
     /// Of each triangle, whether it is to be looked for.
     is_open: Vec<bool>,
     parts: Vec<Part>,
@@ -84,6 +105,7 @@ impl Original<'_> {
             original: self,
             suspect,
             areas: suspect.triangles.iter().map(area).collect(),
+            touching: touching(suspect),
             is_open: vec![true; suspect.triangles.len()],
             parts: Vec::new(),
         };
@@ -98,7 +120,7 @@ impl Original<'_> {
             num_by_features += usize::from(is_by_features);
             match part {
                 Some(part) => {
-                    let triangles = part.triangles.iter();
+                    let triangles = part.lying.triangles.iter();
                     triangles.for_each(|&t| apart.is_open[t as usize] = false);
                     apart.parts.push(part);
                 }
@@ -122,23 +144,36 @@ impl Apart<'_> {
             .part(triangles.iter().map(|&t| all[t as usize]))
     }
 
-    /// Triangles that hang together, of those that are given.
+    /// Triangles that hang together or touch, of those that are given.
     fn regions(&self, triangles: &[u32]) -> Vec<Vec<u32>> {
         let labels = Edges::new(&self.mesh_of(triangles)).components();
         let count = labels.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut label_of = vec![None; self.suspect.triangles.len()];
+        for (&label, &triangle) in labels.iter().zip(triangles) {
+            label_of[triangle as usize] = Some(label);
+        }
+        let mut sets = Sets::new(count);
+        for pair in &self.touching {
+            if let [Some(a), Some(b)] = pair.map(|triangle| label_of[triangle as usize]) {
+                sets.join(a, b);
+            }
+        }
         let mut regions = vec![Vec::new(); count];
         for (&label, &triangle) in labels.iter().zip(triangles) {
-            regions[label as usize].push(triangle);
+            regions[sets.find(label) as usize].push(triangle);
         }
         regions
     }
 
-    fn largest_region(&self) -> Option<Vec<u32>> {
+    fn open(&self) -> Vec<u32> {
         let open = (0u32..).zip(&self.is_open);
-        let open: Vec<u32> = open.filter(|(_, is_open)| **is_open).map(|o| o.0).collect();
+        open.filter(|(_, is_open)| **is_open).map(|o| o.0).collect()
+    }
+
+    fn largest_region(&self) -> Option<Vec<u32>> {
         let least = LEAST_REGION * self.areas.iter().sum::<f64>();
         let sized = self
-            .regions(&open)
+            .regions(&self.open())
             .into_iter()
             .map(|region| (self.area_of(&region), region));
         let large = sized.filter(|(area, _)| *area >= least);
@@ -192,6 +227,7 @@ impl Apart<'_> {
         }
         for part in &self.parts {
             let corners = part
+                .lying
                 .triangles
                 .iter()
                 .flat_map(|&t| self.suspect.triangles[t as usize]);
@@ -222,23 +258,38 @@ impl Apart<'_> {
             .kept
             .into_iter()
             .filter(|kept| self.is_of_size(&kept.motion));
-        let mut motion = best.max_by(|a, b| a.near.total_cmp(&b.near))?.motion;
-        let mut triangles = Vec::new();
+        // Made small enough, anything lies somewhere.
+        let worth = |kept: &Registration| kept.near * size(&kept.motion);
+        let mut motion = best.max_by(|a, b| worth(a).total_cmp(&worth(b)))?.motion;
+        let least = LEAST_PART * self.areas.iter().sum::<f64>();
+        let is_mirrored = motion.is_mirrored();
+        let mut lying = self.lying(region, is_mirrored, |p| Some(motion.of(p)));
         for _ in 0..2 {
-            triangles = self.explained(region, &motion);
-            if self.area_of(&triangles) < LEAST_PART * self.areas.iter().sum::<f64>() {
+            if self.area_of(&lying.triangles) < least {
                 return None;
             }
-            motion = self.finished(&triangles, motion);
+            motion = self.finished(&lying.triangles, motion);
+            lying = self.lying(region, is_mirrored, |p| Some(motion.of(p)));
         }
-        let area = self.area_of(&triangles);
-        let points = Points::of(&self.mesh_of(&triangles), REFINED, 6);
-        let registration = self.original.scored(&points, motion);
+        let open = self.open();
+        let bent = Bent::new(self.original, &self.mesh_of(&open), &motion);
+        let bent = self.lying(&open, is_mirrored, |p| bent.of(p));
+        let is_bent = self.area_of(&bent.triangles) > MUCH_MORE * self.area_of(&lying.triangles);
+        if is_bent {
+            lying = bent;
+        }
+        let area = self.area_of(&lying.triangles);
+        let points = Points::of(&lying.mesh, REFINED, 6);
+        let registration = Registration {
+            motion,
+            ..self.original.scored(&points, Motion::IDENTITY)
+        };
         let is_exact = registration.exact >= LEAST_EXACT;
-        (is_exact && self.is_of_size(&motion)).then_some(Part {
+        (is_exact && area >= least && self.is_of_size(&motion)).then_some(Part {
             registration,
-            triangles,
+            lying,
             area,
+            is_bent,
         })
     }
 
@@ -251,27 +302,47 @@ impl Apart<'_> {
         ratio.max(1.0 / ratio) <= MOST_SCALED
     }
 
-    /// The triangles of a region that lie on the original, in pieces of some size.
-    fn explained(&self, region: &[u32], motion: &Motion) -> Vec<u32> {
+    /// What lies on the original of some triangles, in pieces of some size, where their corners are moved; what is not moved lies nowhere.
+    fn lying(
+        &self,
+        triangles: &[u32],
+        is_mirrored: bool,
+        moved: impl Fn(DVec3) -> Option<DVec3>,
+    ) -> Lying {
         let surface = &self.original.surface;
+        let mut all = self.suspect.triangles.clone();
+        if is_mirrored {
+            all.iter_mut().for_each(|t| t.swap(1, 2));
+        }
         let reach = FINE * self.original.diagonal;
-        let turned = motion.linear.inverse().transpose();
-        let is_near = |&triangle: &u32| {
-            let corners = self
-                .suspect
-                .corners(self.suspect.triangles[triangle as usize]);
-            let [a, b, c] = corners;
-            let normal = (turned * (b - a).cross(c - a)).normalize_or_zero();
-            let middle = motion.of((a + b + c) / 3.0);
-            let foot = surface.foot(middle, reach);
+        let mut places = vec![None; self.suspect.positions.len()];
+        for &triangle in triangles {
+            for v in all[triangle as usize] {
+                let place = &mut places[v as usize];
+                *place = place.or_else(|| moved(self.suspect.positions[v as usize]));
+            }
+        }
+        let lies = |corners: [u32; 3]| {
+            let [Some(a), Some(b), Some(c)] = corners.map(|v| places[v as usize]) else {
+                return false;
+            };
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let foot = surface.foot((a + b + c) / 3.0, reach);
             foot.is_some_and(|(_, plane)| normal.dot(plane) > 0.5)
-                && (corners.iter()).all(|p| surface.nearest_within(motion.of(*p), reach).is_some())
+                && ([a, b, c].iter()).all(|p| surface.nearest_within(*p, reach).is_some())
         };
-        let near: Vec<u32> = region.iter().copied().filter(is_near).collect();
+        let near = triangles.iter().copied();
+        let near: Vec<u32> = near.filter(|&t| lies(all[t as usize])).collect();
         let least = LEAST_PIECE * self.areas.iter().sum::<f64>();
         let mut pieces = self.regions(&near);
         pieces.retain(|piece| self.area_of(piece) >= least);
-        pieces.concat()
+        let triangles = pieces.concat();
+        let places = places.into_iter().map(Option::unwrap_or_default).collect();
+        let mesh = self.suspect.with_positions(places);
+        Lying {
+            mesh: mesh.part(triangles.iter().map(|&t| all[t as usize])),
+            triangles,
+        }
     }
 
     /// The last steps of a part.
@@ -306,21 +377,39 @@ impl Apart<'_> {
                 .map(|part| part.area / total * of(&part.registration))
                 .sum::<f64>()
         };
-        let moved = |part: &Part| {
-            part.registration
-                .motion
-                .of_mesh(&self.mesh_of(&part.triangles))
-        };
         Some(Assembly {
-            mesh: Mesh::joined(self.parts.iter().map(moved)),
             num_parts: self.parts.len(),
+            is_bent: self.parts.iter().any(|part| part.is_bent),
             registration: Registration {
                 motion: largest.motion,
                 near: share(|part| part.near),
                 exact: share(|part| part.exact),
             },
+            mesh: Mesh::joined(self.parts.into_iter().map(|part| part.lying.mesh)),
         })
     }
+}
+
+/// Pairs of triangles that touch and do not hang together.
+fn touching(mesh: &Mesh) -> Vec<[u32; 2]> {
+    let labels = Edges::new(mesh).components();
+    if labels.iter().all(|&label| label == 0) {
+        return Vec::new();
+    }
+    let points = scattered(mesh, TOUCHING, 9);
+    let places = points.iter().map(|point| point.position).collect();
+    let near = Around::new(places, TOUCH * mesh.area().sqrt());
+    let label = |triangle: u32| labels[triangle as usize];
+    let mut pairs = Vec::new();
+    for point in &points {
+        for (_, other) in near.of(point.position) {
+            let pair = [point.triangle, points[other as usize].triangle];
+            if label(pair[0]) < label(pair[1]) {
+                pairs.push(pair);
+            }
+        }
+    }
+    pairs
 }
 
 fn size(motion: &Motion) -> f64 {

@@ -8,6 +8,8 @@ use nalgebra::{SMatrix, SVector};
 /// What a motion may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
+    /// A turn and a shift.
+    Rigid,
     /// A turn, a shift and a scale.
     Similarity,
     /// Any affine map.
@@ -17,6 +19,7 @@ pub enum Freedom {
 impl Freedom {
     fn num(self) -> usize {
         match self {
+            Freedom::Rigid => 6,
             Freedom::Similarity => 7,
             Freedom::Affine => MOST,
         }
@@ -124,7 +127,7 @@ fn step(
 fn row(freedom: Freedom, y: DVec3, plane: DVec3) -> [f64; MOST] {
     let mut row = [0.0; MOST];
     match freedom {
-        Freedom::Similarity => {
+        Freedom::Rigid | Freedom::Similarity => {
             row[..3].copy_from_slice(&y.cross(plane).to_array());
             row[3..6].copy_from_slice(&plane.to_array());
             row[6] = y.dot(plane);
@@ -142,7 +145,7 @@ fn row(freedom: Freedom, y: DVec3, plane: DVec3) -> [f64; MOST] {
 /// The motion by some freedoms, about a centre.
 fn moved(freedom: Freedom, x: &[f64], centre: DVec3, size: f64) -> Motion {
     let (linear, shift) = match freedom {
-        Freedom::Similarity => {
+        Freedom::Rigid | Freedom::Similarity => {
             let turn = DVec3::new(x[0], x[1], x[2]) / size;
             let angle = turn.length();
             let rotation = if angle > 1e-15 {

@@ -6,11 +6,13 @@
 //! | `points` | what stands for a suspect |
 //! | `features` | where a piece may lie |
 //! | `icp` | from nearly right to right |
+//! | `bent` | a part that bends |
 //! | `apart` | a suspect whose parts lie in ways of their own |
 //!
 //! Points of the suspect are held against the original, and not the other way round: so it does not matter how much was cut off.
 
 mod apart;
+mod bent;
 mod features;
 mod icp;
 mod moments;
@@ -50,6 +52,8 @@ const NEARLY: f64 = 0.12;
 const HOPELESS: f64 = 0.35;
 /// Rounds on all points of what was brought near on a few: after each round what is left is a small part of what was.
 const LAST_ROUNDS: usize = 5;
+/// How far a candidate and the last steps may take a suspect, as shares of the diagonal: what does not lie there shrinks, or is flattened, until it does.
+const FARTHEST: [f64; 2] = [0.15, 0.1];
 /// What is less near than this lies on no original.
 pub const LEAST_NEAR: f64 = 0.6;
 
@@ -169,26 +173,40 @@ impl<'a> Original<'a> {
     }
 
     fn scored(&self, points: &Points, motion: Motion) -> Registration {
+        let [near, exact] = self.nears(points, &motion, [FINE, EXACT]);
         Registration {
             motion,
-            near: self.near(points, &motion, FINE),
-            exact: self.near(points, &motion, EXACT),
+            near,
+            exact,
         }
     }
 
-    /// The share of points that lie near the original, as a share of its diagonal, when they are moved.
-    fn near(&self, points: &Points, motion: &Motion, distance: f64) -> f64 {
+    /// The shares of points that lie as near to the original as each of some distances, the farthest first, when they are moved. Distances are shares of its
+    /// diagonal.
+    fn nears<const N: usize>(
+        &self,
+        points: &Points,
+        motion: &Motion,
+        distances: [f64; N],
+    ) -> [f64; N] {
+        let mut counts = [0; N];
         let turned = motion.linear.inverse().transpose();
         if !turned.is_finite() {
-            return 0.0;
+            return [0.0; N];
         }
-        let is_near = |(p, n): (&DVec3, &DVec3)| {
+        let farthest = distances[0] * self.diagonal;
+        for (p, n) in points.positions.iter().zip(&points.normals) {
             let at = motion.of(*p);
-            let foot = self.surface.foot(at, distance * self.diagonal);
-            foot.is_some_and(|(_, plane)| (turned * *n).normalize_or_zero().dot(plane) > 0.5)
-        };
-        let pairs = points.positions.iter().zip(&points.normals);
-        pairs.filter(|pair| is_near(*pair)).count() as f64 / points.positions.len().max(1) as f64
+            let Some((foot, plane)) = self.surface.foot(at, farthest) else {
+                continue;
+            };
+            if (turned * *n).normalize_or_zero().dot(plane) > 0.5 {
+                let distance = foot.distance(at);
+                let pairs = counts.iter_mut().zip(distances);
+                pairs.for_each(|(count, d)| *count += usize::from(distance < d * self.diagonal));
+            }
+        }
+        counts.map(|count| count as f64 / points.positions.len().max(1) as f64)
     }
 }
 
@@ -224,12 +242,12 @@ impl<'a> Found<'a> {
         let few = self.scored.fewer(SCORED / 4);
         let mut scored: Vec<(f64, Motion)> = candidates
             .into_iter()
-            .map(|motion| (self.original.near(&few, &motion, COARSE), motion))
+            .map(|motion| (self.original.nears(&few, &motion, [COARSE])[0], motion))
             .collect();
         scored.sort_by(|a, b| b.0.total_cmp(&a.0));
         scored.truncate(8 * FOLLOWED);
         for (score, motion) in &mut scored {
-            *score = self.original.near(&self.scored, motion, COARSE);
+            [*score] = self.original.nears(&self.scored, motion, [COARSE]);
         }
         scored.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut followed: Vec<Motion> = Vec::new();
@@ -242,17 +260,17 @@ impl<'a> Found<'a> {
             }
         }
         let d = self.original.diagonal;
-        for motion in followed {
+        for candidate in followed {
             let motion = refined(
                 &self.refined,
                 &self.original.surface,
-                motion,
+                candidate,
                 freedom,
                 15,
                 [0.1 * d, 0.01 * d],
                 0.003 * d,
             );
-            if self.is_possible(&motion) {
+            if !self.differs(&candidate, &motion, FARTHEST[0]) && self.is_possible(&motion) {
                 self.kept.push(self.original.scored(&self.scored, motion));
             }
         }
@@ -296,7 +314,6 @@ impl<'a> Found<'a> {
             nearly => self.finished(&nearly, self.all, [0, LAST_ROUNDS]),
         };
         let mut finished: Vec<Registration> = kept.into_iter().map(finish).collect();
-        finished.retain(|finished| self.is_possible(&finished.motion));
         finished.sort_by(|a, b| b.score().total_cmp(&a.score()));
         finished
     }
@@ -312,7 +329,11 @@ impl<'a> Found<'a> {
         let mut motion = kept.motion;
         for (freedom, rounds) in [(Freedom::Similarity, similar), (Freedom::Affine, affine)] {
             let reach = [0.012 * d, 0.006 * d];
-            motion = refined(points, surface, motion, freedom, rounds, reach, 0.001 * d);
+            let moved = refined(points, surface, motion, freedom, rounds, reach, 0.001 * d);
+            // What lies there in part may shrink or be flattened until it lies there well.
+            if !self.differs(&kept.motion, &moved, FARTHEST[1]) && self.is_possible(&moved) {
+                motion = moved;
+            }
         }
         self.original.scored(points, motion)
     }

@@ -98,12 +98,13 @@ function markWords(comparison: Compared): (Node | string)[] {
   }
 }
 
-function shapeWords({ shape, near, covered, isMirrored, motion }: Comparison, { kind }: Given): Node {
+function shapeWords({ shape, near, covered, isMirrored, isBent, numParts, motion }: Comparison, { kind }: Given): Node {
   const percent = (share: number) => `${Math.round(share * 100)} %`;
   const original = kind === "record" ? "the shape in the record" : "the original";
+  const how = [isMirrored && "as a mirror image", isBent && "bent into another pose", numParts > 1 && `in ${numParts} parts`].filter(Boolean);
   const words =
     shape === "same"
-      ? `: ${percent(near)} of the suspect lies on ${original}${isMirrored ? ", as a mirror image," : ""} and shows ${percent(covered)} of it. This says nothing of who made it.`
+      ? `: ${percent(near)} of the suspect lies on ${original}${how.map((way) => `, ${way}`).join("")}${how.length > 0 ? "," : ""} and shows ${percent(covered)} of it. This says nothing of who made it.`
       : motion === null
         ? ": no way was found to lay the suspect on it."
         : `: in the likeliest place, only ${percent(near)} of the suspect lies on ${original}.`;

@@ -127,6 +127,15 @@ test("an attacked copy and its evidence have the same bytes, and are read alike:
   assert.deepEqual(withRecord, meshmark.compareWithRecord(copy, record, KEY, { details: true }));
 });
 
+test("a copy in another pose is bent back onto its original alike", () => {
+  const steps = ["posed 30 degrees", "simplify 50 %"];
+  report("attack", "marked.glb", "posed.glb", ...steps.flatMap((step) => ["--step", step]));
+  write("another-key", new Uint8Array(32).fill(2)); // all ways are tried
+  const native = report("extract", "posed.glb", "--key-file", join(folder, "another-key"), "--original", "model.glb");
+  assert.equal(native.isBent, true);
+  assert.deepEqual(native, meshmark.compare(read("posed.glb"), model, new Uint8Array(32).fill(2)));
+});
+
 test("copies for buyers have the same bytes, and are traced alike", () => {
   write("buyers.csv", "number\n7\n8\n");
   report("copies", "model.glb", ...OWNER, "--ledger", "buyers.csv", "--out", "copies");

@@ -215,7 +215,7 @@ impl Said {
     }
 }
 
-/// Blind, with the original, with the record; `None` where a program did not do what it was told.
+/// Blind, with the original, with the record; `None` where a program did not do what it was told, or another key cannot mark the model.
 type Cell = Option<[Said; 3]>;
 
 /// Prints the table, row after row: each model once at a strength, under keys of its own; of small models only copies that are whole or halved.
@@ -290,11 +290,11 @@ fn cells_of(case: &Case, row: &Row) -> Result<Cell, String> {
     let marked = case.marked.as_ref().map_err(Clone::clone)?;
     let purpose = format!("{}, {name}", case.purpose);
     let suspect = match row.make(case, marked, case.seed.number(&purpose, 0)) {
-        Err(said) if matches!(row, Row::Tool(_)) => {
+        Ok(suspect) => suspect,
+        Err(said) => {
             eprintln!("{}, {name}: {said}", case.model.name);
             return Ok(None);
         }
-        suspect => suspect?,
     };
     let suspect = to_glb(&similarity(&suspect, case.seed.number(&purpose, 1)));
     let said = |error: meshmark::Error| format!("{}, {name}: {error}", case.model.name);

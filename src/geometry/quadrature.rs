@@ -9,87 +9,123 @@ pub struct Sample {
     pub weights: [f64; 3],
     /// The centroid, in scene units.
     pub point: DVec3,
+    /// The part's area times the triangle's normal.
+    pub area: DVec3,
 }
 
-/// Splits are no deeper than this: 4096 parts.
-const DEEPEST: u32 = 6;
+/// A triangle has so many slices at most, and a slice so many parts.
+const MOST: f64 = 64.0;
 
-/// Splits triangles into parts whose edges are no longer than a limit.
+/// Limits are doubled so many times at most: then each triangle is one part.
+const COARSEST: u32 = 6;
+
+/// Splits triangles into parts that are no longer than a limit, by lines from a corner and lines across them: long triangles have few.
 pub struct Quadrature {
     max_edge: f64,
-    deepest: u32,
-    /// By depth, the centroids of a triangle's `4^depth` equal parts, in barycentric coordinates.
-    centroids: Vec<Vec<[f64; 3]>>,
+    /// How many times the limit was doubled.
+    coarseness: u32,
+}
+
+/// How a triangle is split: into slices between its apex and the side across from it, equally thick, and each slice into parts of equal
+/// areas.
+struct Split {
+    /// The corner across from the shortest side.
+    apex: usize,
+    num_slices: u32,
+    /// The shortest side, in limits.
+    base: f64,
+}
+
+impl Split {
+    /// How many parts a slice has, those at the apex first.
+    fn columns(&self, slice: u32) -> u32 {
+        let far = f64::from(slice + 1) / f64::from(self.num_slices);
+        ((far * self.base).ceil() as u32).max(1)
+    }
 }
 
 impl Quadrature {
-    /// A quadrature with edges up to `max_edge`, in scene units.
+    /// A quadrature of parts up to `max_edge` long and wide, in scene units.
     pub fn new(max_edge: f64) -> Quadrature {
         Quadrature {
             max_edge,
-            deepest: DEEPEST,
-            centroids: (0..=DEEPEST).map(centroids).collect(),
+            coarseness: 0,
         }
     }
 
-    /// The same for triangles that are to be no more parts than a number, or than they are: all splits are then less deep, and
-    /// some edges longer. Without a limit, a few kilobytes of needles cost as much as a scanned statue.
+    /// The same for triangles that are to be no more parts than a number, or than they are: the limit is doubled until they are. Without
+    /// that, a few kilobytes of needles cost as much as a scanned statue.
     pub fn at_most(
         self,
         num_parts: u64,
-        triangles: impl Iterator<Item = [DVec3; 3]>,
+        triangles: impl Iterator<Item = [DVec3; 3]> + Clone,
     ) -> Quadrature {
-        let mut by_depth = [0u64; DEEPEST as usize + 1];
-        triangles.for_each(|corners| by_depth[self.depth(corners) as usize] += 1);
-        let parts = |deepest: u32| -> u64 {
-            let by_depth = by_depth.iter().zip(0..);
-            by_depth
-                .map(|(number, depth)| number << (2 * deepest.min(depth)))
-                .sum()
+        let with = |coarseness| Quadrature { coarseness, ..self };
+        let are_few = |coarseness: &u32| {
+            let quadrature = with(*coarseness);
+            let parts = triangles.clone().map(|corners| {
+                let split = quadrature.split(corners);
+                let columns = (0..split.num_slices).map(|slice| split.columns(slice));
+                u64::from(columns.sum::<u32>())
+            });
+            parts.sum::<u64>() <= num_parts
         };
-        Quadrature {
-            deepest: (1..=DEEPEST)
-                .rev()
-                .find(|&deepest| parts(deepest) <= num_parts)
-                .unwrap_or(0),
-            ..self
+        with((0..COARSEST).find(are_few).unwrap_or(COARSEST))
+    }
+
+    fn split(&self, [a, b, c]: [DVec3; 3]) -> Split {
+        let sides = [b.distance(c), c.distance(a), a.distance(b)];
+        let longest = sides.into_iter().fold(0.0, f64::max);
+        if longest <= self.max_edge {
+            return Split {
+                apex: 0,
+                num_slices: 1,
+                base: 1.0,
+            };
+        }
+        let in_limits =
+            |side: f64| (side / self.max_edge).min(MOST) / f64::from(1u32 << self.coarseness);
+        let apex = [1, 2].into_iter().fold(0, |apex, other| {
+            if sides[other] < sides[apex] {
+                other
+            } else {
+                apex
+            }
+        });
+        Split {
+            apex,
+            num_slices: (in_limits(longest).ceil() as u32).max(1),
+            base: in_limits(sides[apex]),
         }
     }
 
-    /// How deep a triangle is split.
-    fn depth(&self, [a, b, c]: [DVec3; 3]) -> u32 {
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        (0..self.deepest)
-            .find(|&depth| longest <= self.max_edge * f64::from(1 << depth))
-            .unwrap_or(self.deepest)
+    /// The samples of a triangle, one for each part. Moments of the first order are exact in every part.
+    pub fn samples(&self, corners: [DVec3; 3]) -> impl Iterator<Item = Sample> + use<> {
+        let [a, b, c] = corners;
+        let whole = (b - a).cross(c - a) * 0.5;
+        let split = self.split(corners);
+        let num_slices = f64::from(split.num_slices);
+        (0..split.num_slices).flat_map(move |slice| {
+            let columns = split.columns(slice);
+            let i = f64::from(slice);
+            // Of a slice from t0 to t1, of the way from the apex: its share of the area is t1^2 - t0^2, and its centroid lies at
+            // 2/3 (t1^3 - t0^3) / (t1^2 - t0^2).
+            let thickness = 2.0 * i + 1.0;
+            let area = whole * (thickness / (num_slices * num_slices * f64::from(columns)));
+            let depth = 2.0 / 3.0 * (3.0 * i * (i + 1.0) + 1.0) / (thickness * num_slices);
+            let apex = split.apex;
+            (0..columns).map(move |column| {
+                let across = (f64::from(column) + 0.5) / f64::from(columns);
+                let mut weights = [0.0; 3];
+                weights[apex] = 1.0 - depth;
+                weights[(apex + 1) % 3] = depth * (1.0 - across);
+                weights[(apex + 2) % 3] = depth * across;
+                Sample {
+                    weights,
+                    point: a * weights[0] + b * weights[1] + c * weights[2],
+                    area,
+                }
+            })
+        })
     }
-
-    /// The samples of a triangle, one for each part, after the area that each part has, times the triangle's normal. Moments of the
-    /// first order are exact in every part.
-    pub fn samples(&self, [a, b, c]: [DVec3; 3]) -> (DVec3, impl Iterator<Item = Sample>) {
-        let depth = self.depth([a, b, c]);
-        let weights = &self.centroids[depth as usize];
-        let area = (b - a).cross(c - a) * (0.5 / weights.len() as f64);
-        let samples = weights.iter().map(move |&weights| Sample {
-            weights,
-            point: a * weights[0] + b * weights[1] + c * weights[2],
-        });
-        (area, samples)
-    }
-}
-
-fn centroids(depth: u32) -> Vec<[f64; 3]> {
-    let side = 1u32 << depth;
-    let third = 1.0 / 3.0;
-    let at = |i: f64, j: f64| {
-        let (u, v) = (i / f64::from(side), j / f64::from(side));
-        [1.0 - u - v, u, v]
-    };
-    let upright = (0..side)
-        .flat_map(|i| (0..side - i).map(move |j| (f64::from(i) + third, f64::from(j) + third)));
-    let inverted = (0..side).flat_map(|i| {
-        (0..(side - i).saturating_sub(1))
-            .map(move |j| (f64::from(i) + 2.0 * third, f64::from(j) + 2.0 * third))
-    });
-    upright.chain(inverted).map(|(i, j)| at(i, j)).collect()
 }

@@ -227,16 +227,11 @@ fn smoothing_has_the_counts_of_the_paper() {
 /// The integral of the squared distance from the unit sphere.
 fn sphere_error(mesh: &Mesh) -> f64 {
     let quadrature = Quadrature::new(0.02);
-    let corners = mesh
-        .triangles
-        .iter()
-        .map(|&triangle| mesh.corners(triangle));
-    let terms = corners.flat_map(|corners| {
-        let (area, samples) = quadrature.samples(corners);
-        samples.map(move |sample| {
-            let distance = sample.point.length() - 1.0;
-            distance * distance * area.length()
-        })
+    let triangles = mesh.triangles.iter();
+    let samples = triangles.flat_map(|&triangle| quadrature.samples(mesh.corners(triangle)));
+    let terms = samples.map(|sample| {
+        let distance = sample.point.length() - 1.0;
+        distance * distance * sample.area.length()
     });
     terms.sum()
 }

@@ -32,6 +32,7 @@ test("the page is built before the study and the attacks are, and says so where 
     page.setDefaultTimeout(SLOW);
     await page.goto(server.origin);
     await page.getByRole("button", { name: "Try the demo model" }).click();
+    await page.getByRole("tabpanel").getByText("demo.glb").first().waitFor(); // the study begins with it
     await page.getByRole("tab", { name: "Study" }).click();
     await page.getByRole("tabpanel").getByText("still being built").waitFor();
     const compressed = { asset: { version: "2.0" }, extensionsRequired: ["KHR_draco_mesh_compression"] };

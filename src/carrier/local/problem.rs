@@ -22,8 +22,8 @@ const GROUPS: usize = 6;
 pub const ROWS_OF_PLACE: usize = 6 * GROUPS;
 
 /// Sides of what is summed, in widths of a place and in pitches.
-const EDGE_OF_PLACE: f64 = 0.4;
-const EDGE_OF_WINDOW: f64 = 1.0 / 3.0;
+const EDGE_OF_PLACE: f64 = 0.3;
+const EDGE_OF_WINDOW: f64 = 1.0 / 4.0;
 
 /// How something answers to vertices that move, in units of their freedom.
 type Row = Vec<(u32, DVec3)>;
@@ -67,9 +67,8 @@ impl<'a> Problem<'a> {
             numbers.map(|(window, row)| (window.index, row)).collect();
         let mut rows: Vec<BTreeMap<u32, DVec3>> = vec![BTreeMap::new(); active.len()];
         for &triangle in triangles {
-            let (area, samples) = quadrature.samples(self.mesh.corners(triangle));
-            let area = area / (pitch * pitch * pitch);
-            for sample in samples {
+            for sample in quadrature.samples(self.mesh.corners(triangle)) {
+                let area = sample.area / (pitch * pitch * pitch);
                 let y = placement.lattice(sample.point);
                 for_each_near(y, lattice::RADIUS, |index, _, q2| {
                     if let Some(&row) = row_of.get(&index) {
@@ -99,8 +98,7 @@ impl<'a> Problem<'a> {
                     pushes.len() - 1
                 })
             });
-            let (area, samples) = quadrature.samples(self.mesh.corners(triangle));
-            for sample in samples {
+            for sample in quadrature.samples(self.mesh.corners(triangle)) {
                 for (group, terms) in groups.iter().enumerate() {
                     let mut entries = [0.0; 6];
                     for (point, width, factor) in terms {
@@ -112,7 +110,7 @@ impl<'a> Problem<'a> {
                     for (slot, weight) in slot.iter().zip(sample.weights) {
                         let rows = &mut pushes[*slot][6 * group..];
                         for (push, entry) in rows.iter_mut().zip(entries) {
-                            *push += area * (entry * weight);
+                            *push += sample.area * (entry * weight);
                         }
                     }
                 }

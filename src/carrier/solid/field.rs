@@ -1,6 +1,6 @@
-//! The flux at every point of the frame, interpolated: what a lattice sees in any of thousands of turns.
+//! The flux at every point of the frame, by Taylor's polynomials: what a lattice sees in any of thousands of turns.
 //!
-//! The flux does not depend on how a lattice lies, so it is taken once at a fine grid, and read off between its points.
+//! The flux does not depend on how a lattice lies, so it is taken once at a fine grid, with its derivatives there.
 
 use super::cluster::Cluster;
 use super::grid::{Grid, ceil, floor};
@@ -8,25 +8,44 @@ use super::lattice::RADIUS;
 use super::window::weight;
 use glam::DVec3;
 
-/// Grid points in a pitch. The error of what is read between them is then 0.2 % of the largest step, as RMS, and 1 % of the
-/// smallest.
-const FINENESS: f64 = 7.0;
+/// Grid points in a pitch. The error of what is read about them is then 1 % of the largest step, as RMS, and 6 % of the smallest; how the
+/// turns of a scan lie errs by more. With 5 it is a third of that in three times the memory, and finds no more marks in spheres.
+const FINENESS: f64 = 3.5;
 
-/// The energy in a grid cell below which none of its points has a weight.
+/// The energy at a grid point below which no point near it has a weight.
 const LEAST_ENERGY: f32 = 0.1;
 
-/// The flux and the energy of a window about any point, for one pitch: both as coefficients of cubic B-splines.
+/// The flux and the energy of a window about any point, for one pitch.
 pub struct Field {
     pub pitch: f64,
-    /// In units: a table half as large is twice as near.
-    grid: Grid<[i16; 2]>,
-    units: [f32; 2],
-    /// The grid in blocks, and a bit for each of their points: whether there is energy.
-    blocks: Vec<u64>,
+    blocks: Grid<Block>,
+    /// Of the grid points with energy, block by block.
+    near: Vec<Near>,
 }
 
 /// Grid points along a block's edge.
-const BLOCK: usize = 4;
+const BLOCK: i32 = 4;
+
+/// A cube of grid points: most of the frame is far from the surface, and holds nothing.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    /// A bit for each of its points: whether there is energy.
+    bits: u64,
+    /// How many points with energy are in the blocks before it.
+    before: u32,
+}
+
+/// Taylor's polynomials about a grid point, in units of the grid: of the flux to the second order, of the energy to the first. In one
+/// line of a processor's cache: a scan reads millions of them, in no order.
+#[repr(align(64))]
+struct Near {
+    flux: f32,
+    slope: [f32; 3],
+    /// Half of the second derivatives by x twice, y twice and z twice; whole ones by y and z, z and x, x and y.
+    curvature: [f32; 6],
+    energy: f32,
+    energy_slope: [f32; 3],
+}
 
 impl Field {
     /// The field of a surface.
@@ -44,93 +63,132 @@ impl Field {
             };
             add(&piece, &mut sums);
         }
-        interpolate(&mut sums);
-        let units = [0, 1].map(|part| {
-            let sizes = sums.values.iter().map(|value| value[part].abs());
-            sizes.fold(1e-30, f32::max) / f32::from(i16::MAX)
-        });
-        let rounded =
-            |value: &[f32; 2]| [0, 1].map(|part| (value[part] / units[part]).round() as i16);
-        let mut field = Field {
-            pitch,
-            grid: Grid {
-                low: sums.low,
-                size: sums.size,
-                values: sums.values.iter().map(rounded).collect(),
-            },
-            units,
-            blocks: vec![0; sums.size.map(|size| size.div_ceil(BLOCK)).iter().product()],
+        // No window at the rim of the grid sees anything, so each of these has neighbours.
+        let has_energy = |index| {
+            let place = sums.find(index);
+            place.is_some_and(|place| sums.values[place][1] > LEAST_ENERGY)
         };
-        for (place, value) in sums.values.iter().enumerate() {
-            if value[1] > LEAST_ENERGY {
-                let index = sums.index(place);
-                let offset = std::array::from_fn(|axis| (index[axis] - sums.low[axis]) as usize);
-                let (block, bit) = field.block(offset);
-                field.blocks[block] |= bit;
+        let corner = |size: [usize; 3]| [0, 1, 2].map(|axis| sums.low[axis] + size[axis] as i32);
+        let corners = [sums.low, corner(sums.size)].map(|corner| {
+            DVec3::from_array(corner.map(|index| f64::from(index.div_euclid(BLOCK))))
+        });
+        let mut blocks = Grid::about(corners.into_iter(), 0.0, Block::default());
+        let mut places = Vec::new();
+        for number in 0..blocks.values.len() {
+            let first = blocks.index(number).map(|index| index * BLOCK);
+            let block = &mut blocks.values[number];
+            block.before = places.len() as u32;
+            for bit in 0..BLOCK * BLOCK * BLOCK {
+                let within = [bit / (BLOCK * BLOCK), bit / BLOCK % BLOCK, bit % BLOCK];
+                let index = [0, 1, 2].map(|axis| first[axis] + within[axis]);
+                if has_energy(index) {
+                    block.bits |= 1 << bit;
+                    places.push(sums.place(index));
+                }
             }
         }
-        field
+        interpolate(&mut sums);
+        let near = places.iter().map(|&place| Near::of(&sums, place));
+        Field {
+            pitch,
+            near: near.collect(),
+            blocks,
+        }
     }
 
-    /// The block of a grid point and its bit there, by its distance from the lowest.
-    fn block(&self, [i, j, k]: [usize; 3]) -> (usize, u64) {
-        let [_, y, z] = self.grid.size.map(|size| size.div_ceil(BLOCK));
-        let block = (i / BLOCK * y + j / BLOCK) * z + k / BLOCK;
-        let bit = (i % BLOCK * BLOCK + j % BLOCK) * BLOCK + k % BLOCK;
-        (block, 1 << bit)
-    }
-
-    /// A point of the frame in units of the grid.
-    fn scaled(&self, point: DVec3) -> DVec3 {
-        point * (FINENESS / self.pitch)
-    }
-
-    /// The grid point below a scaled point, if what is needed to interpolate there is within the grid.
-    fn below(&self, scaled: DVec3) -> Option<usize> {
-        let index = scaled.to_array().map(floor);
-        let offset: [usize; 3] =
-            std::array::from_fn(|axis| index[axis].wrapping_sub(self.grid.low[axis]) as usize);
-        if !(0..3).all(|axis| (1..self.grid.size[axis] - 2).contains(&offset[axis])) {
+    /// The nearest grid point to a point of the frame, if it has energy, and where the point lies from there.
+    fn nearest(&self, point: DVec3) -> Option<(&Near, DVec3)> {
+        let scaled = point * (FINENESS / self.pitch);
+        let index = scaled.to_array().map(|coordinate| floor(coordinate + 0.5));
+        let block = self
+            .blocks
+            .find(index.map(|index| index.div_euclid(BLOCK)))?;
+        let Block { bits, before } = self.blocks.values[block];
+        let [i, j, k] = index.map(|index| index.rem_euclid(BLOCK));
+        let bit = 1 << ((i * BLOCK + j) * BLOCK + k);
+        if bits & bit == 0 {
             return None;
         }
-        let (block, bit) = self.block(offset);
-        (self.blocks[block] & bit != 0).then(|| self.grid.place(index))
+        let near = before + (bits & (bit - 1)).count_ones();
+        let from = scaled - DVec3::from_array(index.map(f64::from));
+        Some((&self.near[near as usize], from))
     }
 
     /// Whether a window about a point sees anything to speak of.
     pub fn sees(&self, point: DVec3) -> bool {
-        self.below(self.scaled(point)).is_some()
+        self.nearest(point).is_some()
     }
 
     /// Flux and weight of the window about a point.
     pub fn at(&self, point: DVec3) -> Option<(f64, f64)> {
-        let scaled = self.scaled(point);
-        self.between(self.below(scaled)?, scaled)
+        let (near, from) = self.nearest(point)?;
+        let (flux, energy) = near.at(from.to_array().map(|coordinate| coordinate as f32));
+        let weight = weight(f64::from(energy.max(0.0)));
+        (weight > 0.0).then_some((f64::from(flux), weight))
+    }
+}
+
+impl Near {
+    /// From the coefficients of B-splines about a place of a grid.
+    fn of(coefficients: &Grid<[f32; 2]>, place: usize) -> Near {
+        /// What the coefficients before, at and after a point give its value, its slope and half of its curvature.
+        const VALUE: [f32; 3] = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
+        const SLOPE: [f32; 3] = [-0.5, 0.0, 0.5];
+        const CURVATURE: [f32; 3] = [0.5, -1.0, 0.5];
+        let [_, ny, nz] = coefficients.size;
+        let along = |z: [f32; 3], part: usize| {
+            [0, 1, 2].map(|i| {
+                [0, 1, 2].map(|j| {
+                    let start = place + i * ny * nz + j * nz - ny * nz - nz - 1;
+                    let values = &coefficients.values[start..start + 3];
+                    values
+                        .iter()
+                        .zip(z)
+                        .map(|(value, z)| value[part] * z)
+                        .sum::<f32>()
+                })
+            })
+        };
+        let across = |rows: &[[f32; 3]; 3], x: [f32; 3], y: [f32; 3]| -> f32 {
+            let row = |row: &[f32; 3]| row.iter().zip(y).map(|(value, y)| value * y).sum::<f32>();
+            rows.iter().zip(x).map(|(values, x)| row(values) * x).sum()
+        };
+        let [value, slope, curvature] = [VALUE, SLOPE, CURVATURE].map(|z| along(z, 0));
+        let energies = [VALUE, SLOPE].map(|z| along(z, 1));
+        Near {
+            flux: across(&value, VALUE, VALUE),
+            slope: [
+                across(&value, SLOPE, VALUE),
+                across(&value, VALUE, SLOPE),
+                across(&slope, VALUE, VALUE),
+            ],
+            curvature: [
+                across(&value, CURVATURE, VALUE),
+                across(&value, VALUE, CURVATURE),
+                across(&curvature, VALUE, VALUE),
+                across(&slope, VALUE, SLOPE),
+                across(&slope, SLOPE, VALUE),
+                across(&value, SLOPE, SLOPE),
+            ],
+            energy: across(&energies[0], VALUE, VALUE),
+            energy_slope: [
+                across(&energies[0], SLOPE, VALUE),
+                across(&energies[0], VALUE, SLOPE),
+                across(&energies[1], VALUE, VALUE),
+            ],
+        }
     }
 
-    /// The same at a scaled point, from the place of the grid point below it.
-    fn between(&self, place: usize, scaled: DVec3) -> Option<(f64, f64)> {
-        let [x, y, z] = scaled
-            .to_array()
-            .map(|coordinate| splines(coordinate - f64::from(floor(coordinate))));
-        let (plane, row) = (self.grid.size[1] * self.grid.size[2], self.grid.size[2]);
-        let mut sums = [[0.0f32; 2]; 4];
-        for (i, x) in x.iter().enumerate() {
-            for (j, y) in y.iter().enumerate() {
-                let start = place + i * plane + j * row - plane - row - 1;
-                let share = x * y;
-                for (sum, value) in sums.iter_mut().zip(&self.grid.values[start..start + 4]) {
-                    sum[0] += share * f32::from(value[0]);
-                    sum[1] += share * f32::from(value[1]);
-                }
-            }
-        }
-        let [flux, energy] = [0, 1].map(|part| {
-            let terms = sums.iter().zip(z).map(|(sum, z)| sum[part] * z);
-            f64::from(self.units[part] * terms.sum::<f32>())
-        });
-        let weight = weight(energy.max(0.0));
-        (weight > 0.0).then_some((flux, weight))
+    /// Flux and energy at some distance from the grid point.
+    fn at(&self, [x, y, z]: [f32; 3]) -> (f32, f32) {
+        let [a, b, c] = self.slope;
+        let [xx, yy, zz, yz, zx, xy] = self.curvature;
+        let flux = self.flux
+            + x * (a + xx * x + xy * y)
+            + y * (b + yy * y + yz * z)
+            + z * (c + zz * z + zx * x);
+        let [a, b, c] = self.energy_slope;
+        (flux, self.energy + a * x + b * y + c * z)
     }
 }
 
@@ -171,18 +229,6 @@ fn add(piece: &Cluster, sums: &mut Grid<[f32; 2]>) {
     }
 }
 
-/// The values of the cubic B-splines about the points -1, 0, 1 and 2 at t, 0 to 1.
-fn splines(t: f64) -> [f32; 4] {
-    let u = 1.0 - t;
-    let splines = [
-        u * u * u / 6.0,
-        (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0,
-        (4.0 - 3.0 * u * u * (2.0 - u)) / 6.0,
-        t * t * t / 6.0,
-    ];
-    splines.map(|spline| spline as f32)
-}
-
 /// Replaces values by the coefficients of the cubic B-splines that go through them: a recursive filter there and back along
 /// each axis (Unser, Aldroubi and Eden 1991). All is zero beyond the grid.
 fn interpolate(grid: &mut Grid<[f32; 2]>) {
@@ -219,7 +265,7 @@ mod tests {
     use glam::DMat3;
 
     #[test]
-    fn what_is_read_errs_by_less_than_two_percent_of_the_smallest_step() {
+    fn what_is_read_errs_by_less_than_a_tenth_of_the_smallest_step() {
         const PITCH: f64 = 0.07;
         let shapes = [
             ("rock", shapes::asteroid(40, 60)),
@@ -249,7 +295,8 @@ mod tests {
             assert!(both > 0.95, "{name}: {both} of the windows are in both");
             let square = errors.iter().map(|error| error * error).sum::<f64>();
             let rms = (square / errors.len() as f64).sqrt();
-            assert!(rms > 0.0 && rms < 0.02, "{name}: {rms} steps");
+            eprintln!("{name}: {rms}");
+            assert!(rms > 0.0 && rms < 0.1, "{name}: {rms} steps");
         }
     }
 }

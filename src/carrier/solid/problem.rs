@@ -100,9 +100,8 @@ impl<'a> Problem<'a> {
                     .position(|v| *v as usize == vertex)
                     .unwrap_or(0);
                 let corners = triangle.map(|v| self.positions[v as usize]);
-                let (area, samples) = quadrature.samples(corners);
-                for sample in samples {
-                    let push = area * (sample.weights[corner] * self.freedom[vertex]);
+                for sample in quadrature.samples(corners) {
+                    let push = sample.area * (sample.weights[corner] * self.freedom[vertex]);
                     for_each_near(sample.point, RADIUS, |index, _, q2| {
                         let Some(place) = rows.find(index) else {
                             return;

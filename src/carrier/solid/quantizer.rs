@@ -38,6 +38,12 @@ pub fn held(number: f64, most: f64) -> f64 {
 
 /// The cosine of an angle in turns, to within 1e-11, from additions and products alone: a detector takes millions of them.
 pub fn cosine(turns: f64) -> f64 {
+    let [cosine] = cosines([turns]);
+    cosine
+}
+
+/// The cosines of some angles in turns: a processor takes two of them in the time of one.
+pub fn cosines<const N: usize>(turns: [f64; N]) -> [f64; N] {
     /// Of the sine of an angle in turns: `(-1)^n tau^(2n+1) / (2n+1)!`.
     const SERIES: [f64; 8] = {
         let mut series = [TAU; 8];
@@ -48,9 +54,17 @@ pub fn cosine(turns: f64) -> f64 {
         }
         series
     };
-    let quarter = 0.25 - fraction(turns).abs();
-    let square = quarter * quarter;
-    quarter * SERIES.iter().rev().fold(0.0, |sum, c| sum * square + c)
+    let quarters = turns.map(|turns| 0.25 - fraction(turns).abs());
+    let mut sums = [0.0; N];
+    for c in SERIES.iter().rev() {
+        for (sum, quarter) in sums.iter_mut().zip(quarters) {
+            *sum = *sum * (quarter * quarter) + c;
+        }
+    }
+    for (sum, quarter) in sums.iter_mut().zip(quarters) {
+        *sum *= quarter;
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! The vector areas of a surface, in cells of several sizes: all that the occupancy's smoothed derivatives depend on.
 
-use crate::geometry::Quadrature;
+use crate::geometry::{Quadrature, Sample};
 use crate::mesh::Mesh;
 use crate::order::order_by;
 use glam::DVec3;
 
-/// Triangles are split until their sides are no longer than this, in cells.
-const EDGE: f64 = 1.0;
+/// Triangles are split until their parts are no longer or wider than this, in cells.
+const EDGE: f64 = 0.75;
 /// Parts that a surface is split into, at most, unless it has more triangles.
 const MOST_PARTS: u64 = 1 << 21;
 
@@ -41,17 +41,14 @@ impl Areas {
     pub fn new(mesh: &Mesh, finest: f64, num_levels: usize) -> Areas {
         let corners = || mesh.triangles.iter().map(|&t| mesh.corners(t));
         let quadrature = Quadrature::new(EDGE * finest).at_most(MOST_PARTS, corners());
-        let mut parts = Vec::new();
-        for triangle in corners() {
-            let (area, samples) = quadrature.samples(triangle);
-            let weight = area.length();
-            parts.extend(samples.map(|sample| Piece {
-                point: sample.point,
-                area,
-                weight,
-                moment: 0.0,
-            }));
-        }
+        let samples = corners().flat_map(|triangle| quadrature.samples(triangle));
+        let part = |sample: Sample| Piece {
+            point: sample.point,
+            area: sample.area,
+            weight: sample.area.length(),
+            moment: 0.0,
+        };
+        let parts: Vec<Piece> = samples.map(part).collect();
         let mut levels = vec![gathered(&parts, finest)];
         while levels.len() < num_levels {
             let last = &levels[levels.len() - 1];

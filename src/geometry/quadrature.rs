@@ -13,6 +13,9 @@ pub struct Sample {
     pub area: DVec3,
 }
 
+/// Triangles that are no longer than so many limits stay whole: those of usual meshes are short, and many.
+const WHOLE: f64 = 2.0;
+
 /// A triangle has so many slices at most, and a slice so many parts.
 const MOST: f64 = 64.0;
 
@@ -45,7 +48,7 @@ impl Split {
 }
 
 impl Quadrature {
-    /// A quadrature of parts up to `max_edge` long and wide, in scene units.
+    /// A quadrature of parts up to `max_edge` long and wide, in scene units; of a triangle that is up to twice as long, one part.
     pub fn new(max_edge: f64) -> Quadrature {
         Quadrature {
             max_edge,
@@ -76,7 +79,7 @@ impl Quadrature {
     fn split(&self, [a, b, c]: [DVec3; 3]) -> Split {
         let sides = [b.distance(c), c.distance(a), a.distance(b)];
         let longest = sides.into_iter().fold(0.0, f64::max);
-        if longest <= self.max_edge {
+        if longest <= WHOLE * self.max_edge {
             return Split {
                 apex: 0,
                 num_slices: 1,

@@ -22,8 +22,8 @@ const GROUPS: usize = 6;
 pub const ROWS_OF_PLACE: usize = 6 * GROUPS;
 
 /// Sides of what is summed, in widths of a place and in pitches.
-const EDGE_OF_PLACE: f64 = 0.3;
-const EDGE_OF_WINDOW: f64 = 1.0 / 4.0;
+const EDGE_OF_PLACE: f64 = 0.2;
+const EDGE_OF_WINDOW: f64 = 1.0 / 6.0;
 
 /// How something answers to vertices that move, in units of their freedom.
 type Row = Vec<(u32, DVec3)>;

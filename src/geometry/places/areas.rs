@@ -6,7 +6,7 @@ use crate::order::order_by;
 use glam::DVec3;
 
 /// Triangles are split until their parts are no longer or wider than this, in cells.
-const EDGE: f64 = 0.75;
+const EDGE: f64 = 0.5;
 /// Parts that a surface is split into, at most, unless it has more triangles.
 const MOST_PARTS: u64 = 1 << 21;
 

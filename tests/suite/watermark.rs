@@ -374,7 +374,7 @@ fn options_out_of_range_are_refused() {
 /// Wrong keys against evidence of a marked and of an unmarked model: the tail of ln p inside its bound, none convicted.
 #[portable_test]
 fn wrong_keys_find_nothing() {
-    let host = to_glb(&asteroid());
+    let host = to_glb(&shapes::asteroid(24, 36));
     let marked = marked(&host, &key(255)).unwrap().model;
     let values: Vec<f64> = [&host, &marked]
         .into_iter()

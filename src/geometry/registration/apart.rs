@@ -7,7 +7,7 @@
 use super::bent::Bent;
 use super::icp::{Freedom, refined};
 use super::points::Points;
-use super::{FINE, Found, Original, REFINED, Registration, features};
+use super::{FINE, Found, LEAST_NEAR, Original, REFINED, Registration, Search, features, moments};
 use crate::geometry::Motion;
 use crate::geometry::near::Around;
 use crate::geometry::scatter::scattered;
@@ -30,6 +30,8 @@ const LEAST_EXACT: f64 = 0.45;
 const MOST_SCALED: f64 = 1.15;
 /// A part bends where that explains so many times as much of it: what does not bend keeps one motion, which leaves all of the mark.
 const MUCH_MORE: f64 = 1.1;
+/// The share of the suspect's area that a part has to be for it to be the whole.
+const MOST_OF: f64 = 0.9;
 /// Parts touch where points of them, of so many, are nearer to each other than this share of the root of the suspect's area.
 const TOUCH: f64 = 0.02;
 const TOUCHING: usize = 6000;
@@ -254,13 +256,59 @@ impl Apart<'_> {
         let area = self.area_of(region);
         let mut found = Found::new(self.original, points, area);
         found.follow(motions, Freedom::Similarity);
-        let best = found
-            .kept
-            .into_iter()
-            .filter(|kept| self.is_of_size(&kept.motion));
+        let kept = found.kept.into_iter();
+        let mut kept: Vec<Registration> = kept.filter(|k| self.is_of_size(&k.motion)).collect();
         // Made small enough, anything lies somewhere.
         let worth = |kept: &Registration| kept.near * size(&kept.motion);
-        let mut motion = best.max_by(|a, b| worth(a).total_cmp(&worth(b)))?.motion;
+        kept.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+        if region.len() < self.suspect.triangles.len() {
+            kept.truncate(1);
+        }
+        // A whole that bends lies nowhere well before it is bent back, so that the best motion may be none of its own.
+        let mut best: Option<Part> = None;
+        for Registration { motion, .. } in kept {
+            let part = self.laid_from(region, motion);
+            let is_better = |part: &Part| best.as_ref().is_none_or(|best| best.area < part.area);
+            best = part.filter(is_better).or(best);
+            if best
+                .as_ref()
+                .is_some_and(|best| best.area >= LEAST_NEAR * area)
+            {
+                break;
+            }
+        }
+        let best = best?;
+        let is_all = best.is_bent && best.area >= MOST_OF * self.areas.iter().sum::<f64>();
+        Some(if is_all {
+            self.turned(region, best)
+        } else {
+            best
+        })
+    }
+
+    /// A whole that was bent back, as it lies best: on an original that looks alike from several sides it may have been bent onto another one.
+    fn turned(&self, region: &[u32], mut part: Part) -> Part {
+        let mut ways = self.original.registrations(&part.lying.mesh, Search::Quick);
+        // Where a third of a turn or less leads to the same shape, axes do not tell how it is turned.
+        if moments::has_equal_spreads(&self.original.points) {
+            ways.extend(
+                self.original
+                    .registrations(&part.lying.mesh, Search::Pieces),
+            );
+        }
+        let score = |part: &Part| part.area * part.registration.exact;
+        let began = part.registration.motion;
+        for way in ways {
+            let other = self.laid_from(region, way.motion.after(&began));
+            part = other
+                .filter(|other| score(other) > score(&part))
+                .unwrap_or(part);
+        }
+        part
+    }
+
+    /// The part of a region that lies on the original from a motion on.
+    fn laid_from(&self, region: &[u32], mut motion: Motion) -> Option<Part> {
         let least = LEAST_PART * self.areas.iter().sum::<f64>();
         let is_mirrored = motion.is_mirrored();
         let mut lying = self.lying(region, is_mirrored, |p| Some(motion.of(p)));

@@ -9,6 +9,8 @@ use nalgebra::{Matrix3, SymmetricEigen};
 const EXCHANGEABLE: f64 = 1.35;
 /// The same for fourth moments.
 const ALIKE: f64 = 1.12;
+/// Spreads of one size, as far as strewn points tell.
+const EQUAL: f64 = 1.05;
 /// Rounds of making second moments equal by areas. A part stretched by 3 is laid right after 8; chosen on generated shapes and eight stretches.
 const ROUNDS: usize = 8;
 
@@ -50,6 +52,13 @@ fn eigen(vectors: impl Iterator<Item = (DVec3, f64)>) -> (DMat3, DVec3) {
         DMat3::from_cols(column(0), column(1), column(2)),
         DVec3::from_array(values),
     )
+}
+
+/// Whether two spreads are equal, as they are of any shape that a third of a turn or less takes onto itself.
+pub fn has_equal_spreads(points: &Points) -> bool {
+    let sizes = moments(&points.positions, &as_strewn(points)).sizes;
+    let [a, b, c] = sizes.to_array();
+    b < EQUAL * a || c < EQUAL * b
 }
 
 /// Motions of a whole copy: axes onto axes in every sense, also with a scale for each axis.

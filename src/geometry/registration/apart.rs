@@ -7,7 +7,9 @@
 use super::bent::Bent;
 use super::icp::{Freedom, refined};
 use super::points::Points;
-use super::{FINE, Found, LEAST_NEAR, Original, REFINED, Registration, Search, features, moments};
+use super::{
+    FINE, Found, KEPT, LEAST_NEAR, Original, REFINED, Registration, Search, features, moments,
+};
 use crate::geometry::Motion;
 use crate::geometry::near::Around;
 use crate::geometry::scatter::scattered;
@@ -261,10 +263,9 @@ impl Apart<'_> {
         // Made small enough, anything lies somewhere.
         let worth = |kept: &Registration| kept.near * size(&kept.motion);
         kept.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-        if region.len() < self.suspect.triangles.len() {
-            kept.truncate(1);
-        }
         // A whole that bends lies nowhere well before it is bent back, so that the best motion may be none of its own.
+        let is_whole = region.len() == self.suspect.triangles.len();
+        kept.truncate(if is_whole { KEPT } else { 1 });
         let mut best: Option<Part> = None;
         for Registration { motion, .. } in kept {
             let part = self.laid_from(region, motion);

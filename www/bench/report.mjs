@@ -29,7 +29,7 @@ export function markdown({ samples, rankings, large, stages, modules, host, rust
 |---|--:|--:|--:|--:|
 ${modules.map(moduleRow).join("\n")}
 
-The npm package is the first; the page loads the study's and the attacks' when they are asked for. The budgets are in \`wasm-pack.toml\`.
+The npm package and the page load the first at once, and \`full\` in its place when what only that has is asked for; the page loads \`research\` for the study and the attacks. The budgets are in \`wasm-pack.toml\`.
 
 ## Times
 

@@ -32,8 +32,8 @@ const LEAST_EXACT: f64 = 0.45;
 const MOST_SCALED: f64 = 1.15;
 /// A part bends where that explains so many times as much of it: what does not bend keeps one motion, which leaves all of the mark.
 const MUCH_MORE: f64 = 1.1;
-/// The share of the suspect's area that a part has to be for it to be the whole.
-const MOST_OF: f64 = 0.9;
+/// The share of the suspect's area from which on a part is taken for the whole; others were not tried.
+const WHOLE: f64 = 0.9;
 /// Parts touch where points of them, of so many, are nearer to each other than this share of the root of the suspect's area.
 const TOUCH: f64 = 0.02;
 const TOUCHING: usize = 6000;
@@ -279,7 +279,7 @@ impl Apart<'_> {
             }
         }
         let best = best?;
-        let is_all = best.is_bent && best.area >= MOST_OF * self.areas.iter().sum::<f64>();
+        let is_all = best.is_bent && best.area >= WHOLE * self.areas.iter().sum::<f64>();
         Some(if is_all {
             self.turned(region, best)
         } else {

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, SymmetricEigen};
 const EXCHANGEABLE: f64 = 1.35;
 /// The same for fourth moments.
 const ALIKE: f64 = 1.12;
-/// Spreads of one size, as far as strewn points tell.
+/// Spreads whose ratio is smaller are of one size, as far as strewn points tell: of 6000 the roots err by some hundredths. Others were not tried.
 const EQUAL: f64 = 1.05;
 /// Rounds of making second moments equal by areas. A part stretched by 3 is laid right after 8; chosen on generated shapes and eight stretches.
 const ROUNDS: usize = 8;
